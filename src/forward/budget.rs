@@ -1,0 +1,161 @@
+//! The bit budget: which accumulator is wide enough, by proof.
+
+use super::form::{Form, Kind};
+use super::steps::ceil_div;
+use crate::num::Wide;
+
+/// The largest step count in one direction.
+pub(crate) const MAX_STEPS: u32 = 1 << 24;
+
+/// The integer type that a lattice accumulates in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Accumulator {
+    /// 32 bits.
+    I32,
+    /// 64 bits.
+    I64,
+    /// 128 bits.
+    I128,
+}
+
+impl core::fmt::Display for Accumulator {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::I32 => "i32",
+            Self::I64 => "i64",
+            Self::I128 => "i128",
+        })
+    }
+}
+
+/// What the engine needs for a net at its step counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Budget {
+    /// The accumulator taken: the narrowest w with (2K+1)·N < 2^w.
+    pub accumulator: Accumulator,
+    /// N = n_r^m n_s^h 2^F: the denominator of every exact coordinate.
+    pub scale: u128,
+    /// F: the fraction bits that the net really uses.
+    pub fraction_bits: u32,
+    /// K ≥ 1: no coordinate moves by more units from a point to the next in a row or column.
+    pub largest_step: u32,
+}
+
+/// Why a lattice cannot be generated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum LatticeError {
+    /// A step count of zero or above 2^24, or different ones for a triangle.
+    Steps {
+        /// Steps in the first direction.
+        r: u32,
+        /// Steps in the second direction.
+        s: u32,
+    },
+    /// No accumulator is wide enough.
+    Budget {
+        /// The degrees in the two directions (0 in the second for a curve).
+        degrees: (usize, usize),
+        /// The step counts.
+        steps: (u32, u32),
+        /// The fraction bits that the net uses.
+        fraction_bits: u32,
+        /// The bits of (2K+1)·N; 128 are there.
+        bits: u32,
+    },
+    /// Unit steps were asked for where a coordinate may move by more than one unit.
+    LongStep {
+        /// The bound on a step, in whole units.
+        units: u32,
+        /// The step counts that make every step at most one unit.
+        needed: (u32, u32),
+    },
+}
+
+impl core::fmt::Display for LatticeError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Steps { r, s } => {
+                write!(f, "step counts {r} x {s} are not in 1 ..= {MAX_STEPS}, or differ for a triangle")
+            }
+            Self::Budget { degrees: (m, h), steps: (r, s), fraction_bits, bits } => write!(
+                f,
+                "degrees ({m}, {h}) at {r} x {s} steps with {fraction_bits} fraction bits need {bits} bits, 128 are there"
+            ),
+            Self::LongStep { units, needed: (r, s) } => {
+                write!(f, "a step may be {units} units long; {r} x {s} steps make all of them at most one unit")
+            }
+        }
+    }
+}
+
+impl core::error::Error for LatticeError {}
+
+/// The largest step in whole units, and the trailing zero bits that all coordinates share.
+fn measure(form: &Form<'_>) -> (u32, u32) {
+    let used = form.points().iter().fold(0, |bits, p| bits | p.x.to_bits() | p.y.to_bits() | p.z.to_bits());
+    let drop = used.trailing_zeros().min(16);
+    let mut largest = 1;
+    for [by_r, by_s] in form.largest_differences() {
+        let by_r = ceil_div(form.degrees.0 as u64 * by_r, u64::from(form.steps.0) << 16);
+        let by_s = ceil_div(form.degrees.1 as u64 * by_s, u64::from(form.steps.1.max(1)) << 16);
+        largest = largest.max(by_r).max(by_s);
+    }
+    (largest as u32, drop)
+}
+
+/// The factors of N: a step count and its exponent, twice.
+fn factors(form: &Form<'_>) -> [(u32, usize); 2] {
+    let second = if form.kind == Kind::Tensor { (form.steps.1, form.degrees.1) } else { (1, 0) };
+    [(form.steps.0, form.degrees.0), second]
+}
+
+impl Budget {
+    /// Checks step counts and finds the accumulator.
+    pub(crate) fn of(form: &Form<'_>) -> Result<Self, LatticeError> {
+        let (r, s) = form.steps;
+        let legal = |n: u32| (1..=MAX_STEPS).contains(&n);
+        let fits = match form.kind {
+            Kind::Curve => legal(r),
+            Kind::Triangle => legal(r) && r == s,
+            Kind::Tensor => legal(r) && legal(s),
+        };
+        if !fits {
+            return Err(LatticeError::Steps { r, s });
+        }
+        let (largest_step, drop) = measure(form);
+        let fraction_bits = 16 - drop;
+        let range = 2 * u128::from(largest_step) + 1;
+        let scale = factors(form).into_iter().try_fold(1_u128 << fraction_bits, |n, (steps, exponent)| {
+            n.checked_mul(u128::from(steps).checked_pow(exponent as u32)?)
+        });
+        let accumulator = scale.and_then(|n| n.checked_mul(range)).map(|values| match 128 - values.leading_zeros() {
+            ..=32 => Accumulator::I32,
+            ..=64 => Accumulator::I64,
+            _ => Accumulator::I128,
+        });
+        match (scale, accumulator) {
+            (Some(scale), Some(accumulator)) => Ok(Self { accumulator, scale, fraction_bits, largest_step }),
+            _ => {
+                let one = Wide::from_i64(1 << fraction_bits).mul_i32(2 * largest_step as i32 + 1);
+                let values = factors(form).into_iter().fold(one, |product, (steps, exponent)| {
+                    core::iter::repeat_n(steps as i32, exponent).fold(product, |p, n| p.mul_i32(n))
+                });
+                Err(LatticeError::Budget {
+                    degrees: form.degrees,
+                    steps: form.steps,
+                    fraction_bits,
+                    bits: values.bit_length(),
+                })
+            }
+        }
+    }
+
+    /// log2 N where N is a power of two.
+    pub(crate) fn dyadic(&self) -> Option<u32> {
+        self.scale.is_power_of_two().then(|| self.scale.trailing_zeros())
+    }
+}

@@ -1,0 +1,139 @@
+//! Which walker serves a plan: the only place that knows the choice of kernel and room.
+
+use super::form::Form;
+use super::kernel::{Accumulate, Kernel, Mask, Residual};
+use super::lattice::LatticePoint;
+use super::walk::{At, Visit, Walker};
+use super::{Accumulator, Budget};
+
+/// One walker per kernel and room. Order 4 holds cubics, 6 quintics, 9 everything.
+#[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant, reason = "no heap; the sizes are documented")]
+pub(super) enum Engine {
+    Accumulate32(Walker<Accumulate<i32>, 4>),
+    Mask32(Walker<Mask<i32>, 4>),
+    Residual32(Walker<Residual<i32>, 4>),
+    Accumulate64(Walker<Accumulate<i64>, 4>),
+    Mask64(Walker<Mask<i64>, 4>),
+    Residual64(Walker<Residual<i64>, 4>),
+    Accumulate64Quintic(Walker<Accumulate<i64>, 6>),
+    Residual64Quintic(Walker<Residual<i64>, 6>),
+    Residual64Full(Walker<Residual<i64>, 9>),
+    Residual128(Walker<Residual<i128>, 9>),
+}
+
+/// Runs `$body` with `$walker` bound to the walker that suits the plan: one place that knows the choice.
+macro_rules! with_walker {
+    ($form:expr, $budget:expr, |$walker:ident, $variant:ident| $body:expr) => {{
+        let (form, budget): (&Form<'_>, &Budget) = ($form, $budget);
+        macro_rules! run {
+            ($name:ident, $room:literal, $kernel:expr) => {{
+                let $walker = Walker::<_, $room>::new($kernel, form, budget);
+                #[allow(unused_imports)]
+                use Engine::$name as $variant;
+                $body
+            }};
+        }
+        let degree = form.degree();
+        let integer_bits = integer_bits(form);
+        match budget.accumulator {
+            Accumulator::I32 if degree < 4 => {
+                if let Some(kernel) = Accumulate::<i32>::of(budget, integer_bits) {
+                    run!(Accumulate32, 4, kernel)
+                } else if let Some(kernel) = Mask::<i32>::of(budget) {
+                    run!(Mask32, 4, kernel)
+                } else {
+                    run!(Residual32, 4, Residual::<i32>::of(budget))
+                }
+            }
+            Accumulator::I32 | Accumulator::I64 if degree < 4 => {
+                if let Some(kernel) = Accumulate::<i64>::of(budget, integer_bits) {
+                    run!(Accumulate64, 4, kernel)
+                } else if let Some(kernel) = Mask::<i64>::of(budget) {
+                    run!(Mask64, 4, kernel)
+                } else {
+                    run!(Residual64, 4, Residual::<i64>::of(budget))
+                }
+            }
+            Accumulator::I32 | Accumulator::I64 if degree < 6 => {
+                if let Some(kernel) = Accumulate::<i64>::of(budget, integer_bits) {
+                    run!(Accumulate64Quintic, 6, kernel)
+                } else {
+                    run!(Residual64Quintic, 6, Residual::<i64>::of(budget))
+                }
+            }
+            Accumulator::I32 | Accumulator::I64 => run!(Residual64Full, 9, Residual::<i64>::of(budget)),
+            Accumulator::I128 => run!(Residual128, 9, Residual::<i128>::of(budget)),
+        }
+    }};
+}
+
+/// Runs `$body` with the walker inside an [`Engine`].
+macro_rules! each_engine {
+    ($engine:expr, $walker:ident => $body:expr) => {
+        match $engine {
+            Engine::Accumulate32($walker) => $body,
+            Engine::Mask32($walker) => $body,
+            Engine::Residual32($walker) => $body,
+            Engine::Accumulate64($walker) => $body,
+            Engine::Mask64($walker) => $body,
+            Engine::Residual64($walker) => $body,
+            Engine::Accumulate64Quintic($walker) => $body,
+            Engine::Residual64Quintic($walker) => $body,
+            Engine::Residual64Full($walker) => $body,
+            Engine::Residual128($walker) => $body,
+        }
+    };
+}
+
+/// Bits of the largest rounded coordinate, sign included.
+fn integer_bits(form: &Form<'_>) -> u32 {
+    let largest = form.points().iter().fold(0, |largest: u32, p| {
+        let here = p.to_array().map(|c| c.unsigned_abs().to_bits());
+        here.into_iter().fold(largest, u32::max)
+    });
+    33 - ((largest + (1 << 15)) >> 16).leading_zeros()
+}
+
+/// A fold: the state is threaded through the walk by value.
+struct Fold<B, F> {
+    state: B,
+    f: F,
+}
+
+impl<B, F: FnMut(B, LatticePoint) -> B> Visit for Fold<B, F> {
+    #[inline(always)]
+    fn point<K: Kernel, const R: usize>(self, at: &At<'_, K, R>) -> Self {
+        let Self { state, mut f } = self;
+        let [x, y, z] = at.point;
+        let state = f(state, LatticePoint { i: at.i, j: at.j, x, y, z });
+        Self { state, f }
+    }
+}
+
+impl Engine {
+    pub(super) fn new(form: &Form<'_>, budget: &Budget) -> Self {
+        with_walker!(form, budget, |walker, Variant| Variant(walker))
+    }
+
+    pub(super) fn next_point(&mut self) -> Option<LatticePoint> {
+        let (i, j, [x, y, z]) = each_engine!(self, walker => walker.next_point())?;
+        Some(LatticePoint { i, j, x, y, z })
+    }
+
+    pub(super) fn remaining(&self) -> u64 {
+        each_engine!(self, walker => walker.remaining())
+    }
+
+    pub(super) fn fold<B>(self, state: B, f: impl FnMut(B, LatticePoint) -> B) -> B {
+        let fold = Fold { state, f };
+        each_engine!(self, walker => walker.visit(fold).state)
+    }
+}
+
+/// Walks a checked form with the kernel that suits it; only that kernel's state is on the stack.
+#[inline]
+pub(super) fn walk<B>(form: &Form<'_>, budget: &Budget, state: B, f: impl FnMut(B, LatticePoint) -> B) -> B {
+    let fold = Fold { state, f };
+    with_walker!(form, budget, |walker, Variant| walker.visit(fold).state)
+}

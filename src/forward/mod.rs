@@ -1,0 +1,46 @@
+//! The point engine: exact lattices of curves and surfaces by forward differences (Huang & Zhu 2002).
+//!
+//! In comes a net of [`I16F16`](crate::num::I16F16) points and step counts; out come the integer points
+//! `floor(S(i/n_r, j/n_s) + 1/2)`, row by row, with additions and compares only.
+//!
+//! # How
+//! With N = n_r^m n_s^h 2^F (n^m 2^F for triangles and curves; F: fraction bits that the net really uses),
+//! φ(i, j) = N·S(i/n_r, j/n_s) is a polynomial in i and j with integer coefficients. Its Newton differences at (0, 0)
+//! are set up once; then each point costs m additions per coordinate. A coordinate is carried as its rounded value x
+//! and the residual e = φ + ⌊N/2⌋ − N·x, which stays in 0 ..= N − 1; a step adds Δφ to e and corrects x.
+//!
+//! # Why it is exact
+//! All arithmetic is modulo 2^w, and e is the only value that is compared. Where no step is longer than K units, e
+//! plus a step lies in (−K·N, (K+1)·N), an interval of (2K+1)·N values, so **(2K+1)·N < 2^w** is enough: differences
+//! may wrap, x cannot be wrong. K comes from the control net (m·max|ΔP|/n, rounded up). The paper's ±1 correction is
+//! the case K = 1 and loses step when a step is longer; this engine corrects by any K.
+//!
+//! | kernel | when | work per step and coordinate, after m additions |
+//! |---|---|---|
+//! | accumulate | N = 2^f, and the coordinate's bits fit above them | a shift to read |
+//! | mask | N = 2^f | a shift, an addition, a mask |
+//! | residual | any N | one unsigned compare; ⌊log2 K⌋ + 1 compares and subtractions when x changes |
+//!
+//! The narrowest of `i32`, `i64`, `i128` with (2K+1)·N < 2^w is taken; what fits none is a
+//! [`LatticeError::Budget`].
+
+mod budget;
+mod curve;
+mod engine;
+mod form;
+mod kernel;
+mod lattice;
+mod steps;
+mod tangent;
+mod walk;
+
+pub use budget::{Accumulator, Budget, LatticeError};
+pub use curve::{CurveLattice, CurvePoint, CurvePoints, UnitStep, UnitSteps};
+pub use lattice::{Lattice, LatticePoint, LatticePoints, RowStep, RowSteps};
+pub use steps::Steps;
+
+pub(crate) use budget::MAX_STEPS;
+pub(crate) use form::Form;
+pub(crate) use kernel::{Kernel, Residual};
+pub(crate) use tangent::tangent_bits;
+pub(crate) use walk::{At, Visit, Walker};

@@ -1,0 +1,53 @@
+//! Exact tangents from the differences of the points.
+//!
+//! A polynomial with Newton differences Δ^a has the derivative Σ (−1)^(a−1)/a · Δ^a. Times L = lcm(1 ..= m) the
+//! factors are integers, so the tangents are exact sums of differences that are there anyway.
+
+use super::Budget;
+use super::form::Form;
+use crate::num::Word;
+use crate::patch::MAX_DEGREE;
+
+/// lcm(1 ..= m).
+const LCM: [i32; MAX_DEGREE + 1] = [1, 1, 2, 6, 12, 60, 60, 420, 840];
+
+/// (−1)^(a−1)·L/a for the two directions.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Weights {
+    r: [i32; MAX_DEGREE + 1],
+    s: [i32; MAX_DEGREE + 1],
+}
+
+fn weights(degree: usize) -> [i32; MAX_DEGREE + 1] {
+    let mut out = [0; MAX_DEGREE + 1];
+    for (a, weight) in out.iter_mut().enumerate().take(degree + 1).skip(1) {
+        let magnitude = LCM[degree].checked_div(a as i32).unwrap_or(0);
+        *weight = if a % 2 == 1 { magnitude } else { -magnitude };
+    }
+    out
+}
+
+impl Weights {
+    pub(crate) fn of(degrees: (usize, usize)) -> Self {
+        Self { r: weights(degrees.0), s: weights(degrees.1) }
+    }
+
+    /// L_r times the derivative along the row.
+    #[inline(always)]
+    pub(crate) fn along_row<W: Word, const R: usize>(&self, d: &[W; R]) -> W {
+        (1..R).fold(W::ZERO, |sum, a| sum.wrapping_plus(d[a].wrapping_mul_i64(self.r[a].into())))
+    }
+
+    /// L_s times the derivative across the rows, as differences along the row.
+    pub(crate) fn across<W: Word, const R: usize>(&self, table: &[[W; R]; R]) -> [W; R] {
+        core::array::from_fn(|a| {
+            (1..R).fold(W::ZERO, |sum, b| sum.wrapping_plus(table[b][a].wrapping_mul_i64(self.s[b].into())))
+        })
+    }
+}
+
+/// The bits, sign included, that hold every component of both tangents: |L·N/n·S'| ≤ L·K·N.
+pub(crate) fn tangent_bits(form: &Form<'_>, budget: &Budget) -> u32 {
+    let factor = LCM[form.degree()] as u128 * u128::from(budget.largest_step);
+    budget.scale.checked_mul(factor).map_or(129, |largest| 129 - largest.leading_zeros())
+}

@@ -1,0 +1,27 @@
+//! Numbers: the only module with shifts, widening and rounding rules.
+//!
+//! In come fixed-point coordinates and small integers; out go exactly rounded ones. Every rounding in this crate
+//! is *half up*: `floor(x + 1/2)`. It commutes with integer translations, and both sides of a shared edge round it
+//! to the same bits.
+//!
+//! | type | what it is | legal range |
+//! |---|---|---|
+//! | [`I16F16`] | coordinates that the point engine takes | −32767 ..= 32767 units |
+//! | [`I32F32`] | coordinates of intermediate results, matrices | −2^26 ..= 2^26 units |
+//! | [`Angle`] | a binary fraction of a turn, 2^-32 turns a step | any, it wraps |
+//! | [`Word`] | what the engine accumulates in: `i32`, `i64`, `i128` | chosen from a proven budget |
+
+mod coord;
+mod round;
+mod trig;
+mod wide;
+mod word;
+
+pub use coord::Coord;
+pub use fixed::types::{I16F16, I32F32};
+pub use trig::Angle;
+pub use word::Word;
+
+pub(crate) use coord::{bits_i16f16, bits_i32f32};
+pub(crate) use round::{BINOMIAL, SURJECTIONS, div_half_up, shift_half_up};
+pub(crate) use wide::Wide;

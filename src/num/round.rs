@@ -1,0 +1,84 @@
+//! Rounding half up, and the small integer tables of the difference calculus.
+
+/// `floor(value / 2^shift + 1/2)`.
+///
+/// Exact for every `shift` from 0 to 126 and |value| < 2^126: the half is added before the shift and cannot
+/// overflow.
+pub(crate) const fn shift_half_up(value: i128, shift: u32) -> i128 {
+    if shift == 0 { value } else { (value + (1 << (shift - 1))) >> shift }
+}
+
+/// `floor(value / divisor + 1/2)`; `None` for a divisor that is not positive.
+///
+/// Exact for |value| < 2^125, divisor < 2^125: floor((2v + d) / 2d).
+pub(crate) const fn div_half_up(value: i128, divisor: i128) -> Option<i128> {
+    if divisor <= 0 {
+        return None;
+    }
+    match (2 * value + divisor).checked_div_euclid(2 * divisor) {
+        Some(quotient) => Some(quotient),
+        None => None,
+    }
+}
+
+/// Binomial coefficients: `BINOMIAL[n][k]` = C(n, k), n ≤ 16; 0 for k > n.
+pub(crate) const BINOMIAL: [[u16; 17]; 17] = {
+    let mut table = [[0; 17]; 17];
+    let mut n = 0;
+    while n < 17 {
+        table[n][0] = 1;
+        let mut k = 1;
+        while k <= n {
+            table[n][k] = table[n - 1][k - 1] + table[n - 1][k];
+            k += 1;
+        }
+        n += 1;
+    }
+    table
+};
+
+/// `SURJECTIONS[k][a]` = a! S(k, a) with the Stirling numbers of the second kind S: the a-th forward difference of
+/// i^k at i = 0. At most 141 120 (k = 8).
+pub(crate) const SURJECTIONS: [[i32; 9]; 9] = {
+    let mut table = [[0; 9]; 9];
+    table[0][0] = 1;
+    let mut k = 1;
+    while k < 9 {
+        let mut a = 1;
+        while a <= k {
+            // a! S(k,a) = a (a! S(k-1,a) + (a-1)! S(k-1,a-1) ... ) with the factor a taken out of both terms.
+            table[k][a] = a as i32 * (table[k - 1][a] + table[k - 1][a - 1]);
+            a += 1;
+        }
+        k += 1;
+    }
+    table
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn halves_go_up() {
+        assert_eq!(shift_half_up(3, 1), 2);
+        assert_eq!(shift_half_up(-3, 1), -1);
+        assert_eq!(shift_half_up(-5, 2), -1);
+        assert_eq!(div_half_up(-5, 2), Some(-2));
+        assert_eq!(div_half_up(5, 2), Some(3));
+        assert_eq!(div_half_up(1, 0), None);
+    }
+
+    #[test]
+    fn surjections_are_differences_of_powers_at_zero() {
+        for k in 0..9u32 {
+            let mut row: [i64; 9] = core::array::from_fn(|i| (i as i64).pow(k));
+            for a in 0..9 {
+                assert_eq!(i64::from(SURJECTIONS[k as usize][a]), row[0], "k={k} a={a}");
+                for i in 0..8 - a {
+                    row[i] = row[i + 1] - row[i];
+                }
+            }
+        }
+    }
+}
