@@ -10,5 +10,12 @@ extern crate std;
 
 pub mod forward;
 pub mod geometry;
+#[cfg(feature = "graphics")]
+#[cfg_attr(docsrs, doc(cfg(feature = "graphics")))]
+pub mod graphics;
 pub mod num;
 pub mod patch;
+#[cfg(feature = "std")]
+#[cfg_attr(docsrs, doc(cfg(feature = "std")))]
+pub mod reference;
+pub mod render;

@@ -144,7 +144,7 @@ fn tensor_counts(net: TensorNet<'_>) -> Steps {
         }
     }
     let k = minus.min(plus).max(m * h * a * b);
-    let count = |other: i128| k.checked_div(m * h * other).unwrap_or(0) as u128 + 1;
+    let count = |other: i128| k.checked_div((m * h * other) << 16).unwrap_or(0) as u128 + 1;
     Steps::of_net(count(b), count(a))
 }
 

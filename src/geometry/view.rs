@@ -2,6 +2,7 @@
 
 use super::{Affine, Bounds, GeometryError, Point3};
 use crate::num::{Angle, Coord, I16F16, I32F32, div_half_up};
+use core::borrow::Borrow;
 
 /// A direction of view: the model (z up) is turned by `spin` about z, then by `tilt` about x, and the screen shows
 /// (x, −y, −z) of that. The default is tilt −60°, spin 30°.
@@ -49,9 +50,9 @@ impl View {
     /// # Errors
     /// [`GeometryError::EmptyScreen`], [`GeometryError::NothingToFit`], or a turned point or matrix entry out of
     /// range.
-    pub fn fit<'a, C: Coord>(
+    pub fn fit<C: Coord, P: Borrow<Point3<C>>>(
         &self,
-        points: impl IntoIterator<Item = &'a Point3<C>>,
+        points: impl IntoIterator<Item = P>,
         width: u32,
         height: u32,
         fit: I16F16,
@@ -62,7 +63,7 @@ impl View {
         let rotation = self.rotation()?;
         let mut bounds: Option<Bounds<I32F32>> = None;
         for point in points {
-            let p = rotation.apply_into(point)?;
+            let p = rotation.apply_into(point.borrow())?;
             let here = Bounds { min: p, max: p };
             bounds = Some(bounds.map_or(here, |b| b.union(&here)));
         }

@@ -1,0 +1,117 @@
+//! The smallest firmware: a bicubic patch from flash, its lattice at 16 × 16 steps, one line with a checksum.
+//!
+//! `cargo run --release --target thumbv7em-none-eabihf --example fw_smoke` runs it under QEMU (likewise `thumbv6m`,
+//! `thumbv7m` and `riscv32imc`); without `--target` the host prints the same line. `tests/firmware.rs` compares the
+//! two and reads the image's symbols: no panic, no soft float, no allocator.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+use embedded_surfaces::const_net;
+use embedded_surfaces::forward::{Lattice, LatticePoint, Steps};
+use embedded_surfaces::patch::{BicubicPatch, Surface};
+
+/// A wave about 100 pixels wide, range-checked by the compiler.
+pub(crate) static PATCH: BicubicPatch = const_net!(BicubicPatch::from_ints([
+    [[12, 7, 0], [5, 38, 60], [21, 70, -40], [9, 104, 10]],
+    [[40, -3, 35], [44, 31, -50], [37, 73, 80], [42, 99, 0]],
+    [[71, 11, -20], [66, 29, 90], [75, 64, -30], [68, 110, 25]],
+    [[103, 2, 5], [110, 41, -60], [97, 66, 45], [106, 95, -15]],
+]));
+
+/// Steps in both directions.
+pub(crate) const STEPS: u32 = 16;
+
+/// Multiplied before each addition, so that the order of points and coordinates counts.
+pub(crate) fn append(sum: u32, value: u32) -> u32 {
+    sum.wrapping_mul(0x0100_0193).wrapping_add(value).rotate_left(5)
+}
+
+/// Number of points and checksum over all (i, j, x, y, z); `None` only for a plan that does not fit.
+pub(crate) fn checksum(patch: &BicubicPatch, steps: u32) -> Option<(u32, u32)> {
+    let lattice = Lattice::new(patch.surface(), Steps::uniform(steps).ok()?).ok()?;
+    let (mut count, mut sum) = (0_u32, 0);
+    lattice.for_each(|LatticePoint { i, j, x, y, z }| {
+        sum = [i, j, x as u32, y as u32, z as u32].into_iter().fold(sum, append);
+        count = count.wrapping_add(1);
+    });
+    Some((count, sum))
+}
+
+/// Writes the line that all targets print; an error for a refused plan.
+pub(crate) fn report(out: &mut impl core::fmt::Write) -> core::fmt::Result {
+    // The optimiser must not know the patch: the image is to hold the engine, not its result.
+    let (patch, steps) = core::hint::black_box((&PATCH, STEPS));
+    let (count, sum) = checksum(patch, steps).ok_or(core::fmt::Error)?;
+    writeln!(out, "fw_smoke: {count} points, checksum {sum:08x}")
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    let mut line = String::new();
+    match report(&mut line) {
+        Ok(()) => print!("{line}"),
+        Err(_) => std::process::exit(1),
+    }
+}
+
+/// Output by semihosting.
+#[cfg(all(target_os = "none", target_arch = "arm"))]
+mod target {
+    use cortex_m as _; // the critical section of `hprint!`
+    use cortex_m_semihosting::{debug, hio, hprintln};
+
+    #[cortex_m_rt::entry]
+    fn main() -> ! {
+        let done = hio::hstdout().is_ok_and(|mut out| super::report(&mut out).is_ok());
+        if !done {
+            hprintln!("fw_smoke: the lattice was refused");
+        }
+        leave(done)
+    }
+
+    #[panic_handler]
+    fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+        leave(false)
+    }
+
+    fn leave(done: bool) -> ! {
+        debug::exit(if done { debug::EXIT_SUCCESS } else { debug::EXIT_FAILURE });
+        loop {
+            cortex_m::asm::wfi();
+        }
+    }
+}
+
+/// Output by the UART of QEMU's `virt` machine, exit by its test device.
+#[cfg(all(target_os = "none", target_arch = "riscv32"))]
+mod target {
+    const UART: *mut u8 = 0x1000_0000 as *mut u8;
+    const TEST_DEVICE: *mut u32 = 0x10_0000 as *mut u32;
+
+    struct Uart;
+
+    impl core::fmt::Write for Uart {
+        fn write_str(&mut self, text: &str) -> core::fmt::Result {
+            for byte in text.bytes() {
+                // SAFETY: the transmit register of the 16550 at this address; QEMU's is always ready.
+                unsafe { UART.write_volatile(byte) };
+            }
+            Ok(())
+        }
+    }
+
+    #[riscv_rt::entry]
+    fn main() -> ! {
+        leave(super::report(&mut Uart).is_ok())
+    }
+
+    #[panic_handler]
+    fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+        leave(false)
+    }
+
+    fn leave(done: bool) -> ! {
+        // SAFETY: the test device: 0x5555 ends QEMU with status 0, (code << 16) | 0x3333 with that code.
+        unsafe { TEST_DEVICE.write_volatile(if done { 0x5555 } else { 1 << 16 | 0x3333 }) };
+        loop {}
+    }
+}

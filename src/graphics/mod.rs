@@ -1,0 +1,19 @@
+//! Adapters to `embedded-graphics`: the only module that names it.
+//!
+//! In come scenes of [`crate::render`]; out go pixels in a `DrawTarget`.
+//!
+//! * [`Band::draw`](crate::render::Band::draw) sends a band by `fill_contiguous`, clipped to the target.
+//! * [`Model`] is a `Drawable`: patches, a colour, a light and a place. It draws only the pixels that it covers.
+//! * [`Material`] turns levels into colours: every RGB and grey type, and `BinaryColor` by ordered dithering.
+//!
+//! Nothing outside the target's bounding box is ever emitted, and no pixel twice.
+
+mod band;
+mod colour;
+mod model;
+
+pub use colour::{Material, Shade};
+pub use model::Model;
+
+/// The `embedded-graphics-core` that this crate was built with.
+pub use embedded_graphics_core;

@@ -1,0 +1,133 @@
+//! Pictures pulled band by band.
+
+use super::tile::{Area, Paint, Tile};
+use super::{RenderError, Scene};
+use crate::patch::Surface;
+
+/// What drawing cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Statistics {
+    /// Patches walked; one that meets several bands counts in each.
+    pub patches: u32,
+    /// Lattice points generated.
+    pub points: u64,
+}
+
+impl core::ops::AddAssign for Statistics {
+    fn add_assign(&mut self, other: Self) {
+        self.patches += other.patches;
+        self.points += other.points;
+    }
+}
+
+/// A finished band: a rectangle as wide as the frame and its pixels, row by row.
+///
+/// It borrows the colour buffer only, so the next band can be drawn into another one while this one is sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Band<'b, P> {
+    area: Area,
+    pixels: &'b [P],
+}
+
+impl<'b, P> Band<'b, P> {
+    /// The rectangle.
+    #[must_use]
+    pub const fn area(&self) -> Area {
+        self.area
+    }
+
+    /// The pixels, row by row.
+    #[must_use]
+    pub const fn pixels(&self) -> &'b [P] {
+        self.pixels
+    }
+}
+
+/// A picture of a scene, drawn band by band from the top as the caller pulls.
+///
+/// ```
+/// use embedded_surfaces::patch::BilinearPatch;
+/// use embedded_surfaces::render::{Area, Fragment, Frame, Light, Scene, Style};
+/// let square = [BilinearPatch::from_ints([[[1, 1, 0], [1, 6, 0]], [[6, 1, 0], [6, 6, 0]]])?];
+/// let scene = Scene::new(&square, Light::default(), Style::Shaded)?;
+/// let grey = |f: Fragment| f.shade;
+/// let mut frame = Frame::new(scene, &grey, 0, Area { x: 0, y: 0, width: 8, height: 8 }, 3)?;
+/// let (mut colour, mut depth, mut rows) = ([0; 24], [0; 24], 0);
+/// while let Some(band) = frame.next_band(&mut colour, &mut depth)? {
+///     rows += band.area().height; // 3, 3 and 2: send band.pixels() here
+/// }
+/// assert_eq!(rows, 8);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Frame<'a, S, P: Paint> {
+    scene: Scene<'a, S>,
+    paint: &'a P,
+    background: P::Pixel,
+    area: Area,
+    rows: u32,
+    next: u32,
+    statistics: Statistics,
+}
+
+impl<'a, S: Surface, P: Paint> Frame<'a, S, P> {
+    /// A picture of the pixels in `area`, in bands of `rows` rows; the last one may be shorter.
+    ///
+    /// # Errors
+    /// [`RenderError::Area`] for an area without pixels, a side above 32768, or bands of no rows.
+    pub fn new(
+        scene: Scene<'a, S>,
+        paint: &'a P,
+        background: P::Pixel,
+        area: Area,
+        rows: u32,
+    ) -> Result<Self, RenderError> {
+        if !area.is_drawable() {
+            return Err(RenderError::Area { width: area.width, height: area.height });
+        }
+        if rows == 0 {
+            return Err(RenderError::Area { width: area.width, height: rows });
+        }
+        let rows = rows.min(area.height);
+        Ok(Self { scene, paint, background, area, rows, next: 0, statistics: Statistics::default() })
+    }
+
+    /// The pixels that each buffer must hold.
+    #[must_use]
+    pub const fn band_pixels(&self) -> usize {
+        self.area.width as usize * self.rows as usize
+    }
+
+    /// The next band, drawn into `colour` with the help of `depth`; `None` after the last.
+    ///
+    /// # Errors
+    /// [`RenderError::Buffer`] for a buffer too small; nothing is lost, call again with larger ones.
+    pub fn next_band<'b>(
+        &mut self,
+        colour: &'b mut [P::Pixel],
+        depth: &mut [u16],
+    ) -> Result<Option<Band<'b, P::Pixel>>, RenderError> {
+        let left = self.area.height - self.next;
+        if left == 0 {
+            return Ok(None);
+        }
+        let area = Area { y: self.area.y.saturating_add_unsigned(self.next), height: self.rows.min(left), ..self.area };
+        let pixels = {
+            let needed = area.pixels();
+            let error = RenderError::Buffer { needed, colour: colour.len(), depth: depth.len() };
+            let colour = colour.get_mut(..needed).ok_or(error)?;
+            let mut tile = Tile::new(area, &mut *colour, depth, self.background)?;
+            self.statistics += self.scene.draw(&mut tile, self.paint);
+            &*colour
+        };
+        self.next += area.height;
+        Ok(Some(Band { area, pixels }))
+    }
+
+    /// What drawing has cost so far.
+    #[must_use]
+    pub const fn statistics(&self) -> Statistics {
+        self.statistics
+    }
+}

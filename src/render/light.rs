@@ -1,0 +1,128 @@
+//! Light and shade.
+
+use super::RenderError;
+use crate::num::Word;
+
+/// A light from a fixed direction, and the level of what it does not reach.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Light {
+    /// The unit vector towards the light, in 2^-15.
+    direction: [i32; 3],
+    ambient: u8,
+}
+
+impl Default for Light {
+    /// From the upper left behind the viewer, (−2, −3, −6)/7, with an ambient level of 40.
+    fn default() -> Self {
+        const LIGHT: Light = match Light::towards(-2, -3, -6, 40) {
+            Ok(light) => light,
+            Err(_) => Light { direction: [0, 0, -(1 << 15)], ambient: 40 },
+        };
+        LIGHT
+    }
+}
+
+impl Light {
+    /// A light in the direction (x, y, z) of the screen: x right, y down, z away from the viewer; any length.
+    ///
+    /// The unit vector is kept to 2^-16.
+    ///
+    /// ```
+    /// use embedded_surfaces::render::Light;
+    /// assert!(Light::towards(0, -1, -1, 30).is_ok());
+    /// assert!(Light::towards(0, 0, 0, 30).is_err());
+    /// ```
+    ///
+    /// # Errors
+    /// [`RenderError::Light`] for (0, 0, 0).
+    pub const fn towards(x: i16, y: i16, z: i16, ambient: u8) -> Result<Self, RenderError> {
+        let v = [x as i64, y as i64, z as i64];
+        // The length in 2^-15: 15 more bits on each component square to 30 on the sum.
+        let length = (((v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) as u64) << 30).isqrt() as i64;
+        let mut direction = [0; 3];
+        let mut axis = 0;
+        while axis < 3 {
+            match ((v[axis] << 31) + length).checked_div_euclid(2 * length) {
+                Some(c) => direction[axis] = c as i32,
+                None => return Err(RenderError::Light),
+            }
+            axis += 1;
+        }
+        Ok(Self { direction, ambient })
+    }
+
+    /// The unit vector towards the light, in units of 2^-15.
+    #[must_use]
+    pub const fn direction(&self) -> [i32; 3] {
+        self.direction
+    }
+
+    /// The level of what the light does not reach.
+    #[must_use]
+    pub const fn ambient(&self) -> u8 {
+        self.ambient
+    }
+
+    /// The level of a surface with this normal vector, of any length, turned to the viewer.
+    ///
+    /// Components are below 2^15, so the dot product with a unit vector is below √3·2^30 and fits 31 bits.
+    pub(super) fn level(&self, normal: [i32; 3]) -> u8 {
+        let sign = if normal[2] > 0 { -1 } else { 1 };
+        let dot = sign * normal.iter().zip(&self.direction).map(|(n, l)| n * l).sum::<i32>();
+        let square: u32 = normal.iter().map(|n| n.unsigned_abs().pow(2)).sum();
+        let length = square.isqrt() << 7;
+        let above = u32::from(255 - self.ambient) * (dot.max(0) as u32 >> 8) + length / 2;
+        self.ambient.saturating_add(above.checked_div(length).unwrap_or(0) as u8)
+    }
+}
+
+/// The normal U × V with components below 2^15, up to a positive factor; `None` where it vanishes.
+pub(super) fn normal<W: Word>([u, v]: [[W; 3]; 2]) -> Option<[i32; 3]> {
+    let (u, v) = (truncate(u, 30), truncate(v, 30));
+    let [a, b] = [u, v].map(|t| t.map(i64::from));
+    // Two products of 30-bit numbers stay below 2^61.
+    let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    (cross != [0; 3]).then(|| truncate(cross, 15))
+}
+
+/// The vector with its components shifted right by one common amount, so that they fit `bits` bits and a sign.
+fn truncate<W: Word>(v: [W; 3], bits: u32) -> [i32; 3] {
+    let magnitude = v.iter().fold(W::ZERO, |all, c| all | (*c ^ (*c >> (<W as Word>::BITS - 1) as usize)));
+    let used = <W as Word>::BITS - magnitude.leading_zeros();
+    let shift = used.saturating_sub(bits) as usize;
+    v.map(|c| (c >> shift).as_())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_light_is_a_unit_vector() {
+        let light = Light::towards(-2, -3, -6, 0).unwrap();
+        assert_eq!(light.direction(), [-9362, -14043, -28087]); // n/7 of 32768, rounded
+        assert_eq!(Light::towards(0, 0, i16::MIN, 0).unwrap().direction(), [0, 0, -(1 << 15)]);
+        assert_eq!(Light::towards(0, 0, 0, 9), Err(RenderError::Light));
+    }
+
+    #[test]
+    fn facing_the_light_is_255_and_turned_away_is_ambient() {
+        let light = Light::towards(0, 0, -1, 40).unwrap();
+        for n in [[0, 0, -5], [0, 0, 32767], [0, 0, 1]] {
+            assert_eq!(light.level(n), 255, "{n:?}");
+        }
+        assert_eq!(light.level([32767, 0, 0]), 40);
+        assert_eq!(Light::towards(1, 0, 0, 40).unwrap().level([-3000, 0, -5]), 40);
+        assert_eq!(Light::towards(0, 0, -1, 255).unwrap().level([32767, 32767, -32767]), 255);
+    }
+
+    #[test]
+    fn truncation_keeps_the_direction() {
+        assert_eq!(truncate([1_i64 << 40, -(1 << 41), 3], 15), [1 << 13, -(1 << 14), 0]);
+        assert_eq!(truncate([i64::MIN, i64::MAX, -1], 30), [-(1 << 30), (1 << 30) - 1, -1]);
+        assert_eq!(truncate([7_i128, -8, 0], 30), [7, -8, 0]);
+        assert_eq!(normal([[1_i64, 0, 0], [2, 0, 0]]), None);
+        assert_eq!(normal([[1_i128 << 100, 0, 0], [0, 1, 0]]), Some([0, 0, 1 << 14]));
+    }
+}

@@ -1,0 +1,156 @@
+//! Rectangles of pixels in the caller's buffers.
+
+use super::RenderError;
+
+/// A rectangle of pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Area {
+    /// The leftmost column.
+    pub x: i32,
+    /// The uppermost row.
+    pub y: i32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+impl Area {
+    /// The number of pixels.
+    #[must_use]
+    pub const fn pixels(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+
+    /// Between 1 and 32768 pixels a side: index arithmetic then fits every target.
+    pub(super) const fn is_drawable(&self) -> bool {
+        const SIDES: u32 = 1 << 15;
+        self.width > 0 && self.width <= SIDES && self.height > 0 && self.height <= SIDES
+    }
+}
+
+/// What a [`Paint`] sees: a pixel on its way to the buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Fragment {
+    /// The pixel's column.
+    pub x: i32,
+    /// The pixel's row.
+    pub y: i32,
+    /// The index of the patch in its scene.
+    pub patch: usize,
+    /// The grey level, 0 ..= 255.
+    pub shade: u8,
+}
+
+/// Turns shaded pixels into a colour. Implemented by closures and by the materials of [`crate::graphics`].
+pub trait Paint {
+    /// What the colour buffer holds.
+    type Pixel: Copy;
+
+    /// The colour of a pixel.
+    fn pixel(&self, fragment: Fragment) -> Self::Pixel;
+}
+
+impl<P: Copy, F: Fn(Fragment) -> P> Paint for F {
+    type Pixel = P;
+
+    fn pixel(&self, fragment: Fragment) -> P {
+        self(fragment)
+    }
+}
+
+/// The depth of a pixel that nothing was drawn to.
+const FAR: u16 = u16::MAX;
+
+/// A rectangle of pixels in the caller's colour and depth buffers, row by row.
+///
+/// Memory: the two buffers, one pixel and one `u16` per pixel.
+///
+/// ```
+/// use embedded_surfaces::render::{Area, Tile};
+/// let (mut colour, mut depth) = ([0_u8; 64], [0; 64]);
+/// let tile = Tile::new(Area { x: 0, y: 0, width: 8, height: 8 }, &mut colour, &mut depth, 7)?;
+/// assert_eq!(tile.pixels(), [7; 64]);
+/// assert!(!tile.is_covered(0));
+/// # Ok::<(), embedded_surfaces::render::RenderError>(())
+/// ```
+#[derive(Debug)]
+pub struct Tile<'b, P> {
+    area: Area,
+    colour: &'b mut [P],
+    depth: &'b mut [u16],
+}
+
+impl<'b, P: Copy> Tile<'b, P> {
+    /// The rectangle `area`, cleared to `background`. Longer buffers are used from the start.
+    ///
+    /// # Errors
+    /// [`RenderError::Area`] for an area without pixels or with a side above 32768, [`RenderError::Buffer`] for a
+    /// buffer too small.
+    pub fn new(area: Area, colour: &'b mut [P], depth: &'b mut [u16], background: P) -> Result<Self, RenderError> {
+        if !area.is_drawable() {
+            return Err(RenderError::Area { width: area.width, height: area.height });
+        }
+        let needed = area.pixels();
+        let error = RenderError::Buffer { needed, colour: colour.len(), depth: depth.len() };
+        let (Some(colour), Some(depth)) = (colour.get_mut(..needed), depth.get_mut(..needed)) else {
+            return Err(error);
+        };
+        colour.fill(background);
+        depth.fill(FAR);
+        Ok(Self { area, colour, depth })
+    }
+
+    /// The rectangle.
+    #[must_use]
+    pub const fn area(&self) -> Area {
+        self.area
+    }
+
+    /// The colours, row by row.
+    #[must_use]
+    pub fn pixels(&self) -> &[P] {
+        self.colour
+    }
+
+    /// Whether something was drawn to the pixel with this index in [`pixels`](Self::pixels).
+    #[must_use]
+    pub fn is_covered(&self, index: usize) -> bool {
+        self.depth.get(index).is_some_and(|d| *d != FAR)
+    }
+
+    /// Whether something was drawn to the pixel (x, y).
+    #[must_use]
+    pub fn covers(&self, x: i32, y: i32) -> bool {
+        self.index(x, y).is_some_and(|index| self.is_covered(index))
+    }
+
+    /// The index of a pixel inside.
+    #[inline(always)]
+    pub(super) fn index(&self, x: i32, y: i32) -> Option<usize> {
+        let (column, row) = (x.wrapping_sub(self.area.x) as u32, y.wrapping_sub(self.area.y) as u32);
+        (column < self.area.width && row < self.area.height)
+            .then(|| row as usize * self.area.width as usize + column as usize)
+    }
+
+    /// Whether `depth` is nearer than what is at the index; it is stored then. `FAR` itself never is.
+    #[inline(always)]
+    pub(super) fn is_nearest(&mut self, index: usize, depth: u16) -> bool {
+        match self.depth.get_mut(index) {
+            Some(stored) if depth < *stored => {
+                *stored = depth;
+                true
+            }
+            _ => false,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn set(&mut self, index: usize, pixel: P) {
+        if let Some(stored) = self.colour.get_mut(index) {
+            *stored = pixel;
+        }
+    }
+}
