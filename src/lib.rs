@@ -3,9 +3,7 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 //! TODO front page
 
-#[cfg(feature = "std")]
-extern crate std;
-#[cfg(test)]
+#[cfg(any(test, feature = "std"))]
 extern crate std;
 
 pub mod forward;

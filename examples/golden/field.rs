@@ -22,9 +22,10 @@ impl fmt::Display for Malformed {
 /// Parses a file; syntax errors name the field they stand in.
 pub(crate) fn parse(text: &str) -> Result<Value, Malformed> {
     let mut json = serde_json::Deserializer::from_str(text);
-    let complain = |path: String, error: &serde_json::Error| Malformed::new(&path, &error.to_string());
+    let complain =
+        |path: String, error: &serde_json::Error| Malformed::new(path.trim_end_matches('.'), &error.to_string());
     let value = serde_path_to_error::deserialize(&mut json)
-        .map_err(|error| complain(error.path().to_string(), error.inner()))?;
+        .map_err(|error| complain(error.path().to_string().replace('?', ""), error.inner()))?;
     json.end().map_err(|error| complain(String::new(), &error))?;
     Ok(value)
 }

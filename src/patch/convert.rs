@@ -4,10 +4,10 @@ use super::{Curve, MAX_DEGREE, NetError, Tensor, Triangle, triangle_index};
 use crate::geometry::{Axis, Point3};
 use crate::num::{BINOMIAL, Coord, I32F32, div_half_up};
 
-/// Every point in `I16F16`, half up.
-pub(super) fn round<const K: usize>(points: &[Point3<I32F32>; K], zero: Point3) -> Result<[Point3; K], NetError> {
-    let mut out = [zero; K];
-    for (index, (out, p)) in out.iter_mut().zip(points).enumerate() {
+/// Every point in `I16F16`, half up; the first one is point `first` of its net.
+pub(super) fn round<const K: usize>(points: &[Point3<I32F32>; K], first: usize) -> Result<[Point3; K], NetError> {
+    let mut out = [Point3::ORIGIN; K];
+    for (index, (out, p)) in (first..).zip(out.iter_mut().zip(points)) {
         *out = p.round().ok_or_else(|| {
             let largest = Axis::ALL.into_iter().zip(p.to_array()).max_by_key(|(_, c)| c.unsigned_abs());
             let (axis, c) = largest.unwrap_or((Axis::X, I32F32::ZERO));

@@ -78,7 +78,7 @@ impl<const K: usize> Curve<K, I32F32> {
     /// # Errors
     /// [`NetError::OutOfRange`] for a coordinate outside ±32767.
     pub fn round(&self) -> Result<Curve<K>, NetError> {
-        super::convert::round(&self.points, Point3::ORIGIN).and_then(Curve::<K>::new)
+        super::convert::round(&self.points, 0).and_then(Curve::<K>::new)
     }
 }
 

@@ -107,9 +107,9 @@ impl<'a, C: Coord> CurveNet<'a, C> {
     /// The curve through these control points, of degree `points.len() - 1`.
     ///
     /// # Errors
-    /// [`NetError`] for a degree outside 1 ..= 8 or a coordinate out of range.
+    /// [`NetError`] for no points, a degree outside 1 ..= 8 or a coordinate out of range.
     pub fn new(points: &'a [Point3<C>]) -> Result<Self, NetError> {
-        check_degree(points.len().wrapping_sub(1))?;
+        check_degree(points.len().checked_sub(1).ok_or(NetError::Count { expected: 2, given: 0 })?)?;
         check_range(points)?;
         Ok(Self { points })
     }

@@ -92,8 +92,8 @@ impl<const M: usize, const H: usize> Tensor<M, H, I32F32> {
     /// [`NetError::OutOfRange`] for a coordinate outside ±32767.
     pub fn round(&self) -> Result<Tensor<M, H>, NetError> {
         let mut points = [[Point3::ORIGIN; H]; M];
-        for (out, row) in points.iter_mut().zip(&self.points) {
-            *out = super::convert::round(row, Point3::ORIGIN)?;
+        for (i, (out, row)) in points.iter_mut().zip(&self.points).enumerate() {
+            *out = super::convert::round(row, i * H)?;
         }
         Tensor::<M, H>::new(points)
     }

@@ -87,7 +87,7 @@ impl<const N: usize, const LEN: usize> Triangle<N, LEN, I32F32> {
     /// # Errors
     /// [`NetError::OutOfRange`] for a coordinate outside ±32767.
     pub fn round(&self) -> Result<Triangle<N, LEN>, NetError> {
-        super::convert::round(&self.points, Point3::ORIGIN).and_then(Triangle::<N, LEN>::new)
+        super::convert::round(&self.points, 0).and_then(Triangle::<N, LEN>::new)
     }
 }
 

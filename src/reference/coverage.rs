@@ -73,8 +73,8 @@ impl Coverage {
     ///
     /// ```
     /// use embedded_surfaces::{geometry::Point3, patch::{FlatTriangle, Surface}, reference::Coverage};
-    /// let half = 1 << 15;
-    /// let net = FlatTriangle::new([Point3::from_ints(0, 0, 0), Point3::from_bits(half, half, 0), Point3::from_ints(-3, 7, 0)])?;
+    /// let half_way = Point3::from_bits(1 << 15, 1 << 15, 0);
+    /// let net = FlatTriangle::new([Point3::from_ints(0, 0, 0), half_way, Point3::from_ints(-3, 7, 0)])?;
     /// assert_eq!(Coverage::around(net.surface()), Coverage::new(-3, 0, 5, 8));
     /// # Ok::<(), embedded_surfaces::patch::NetError>(())
     /// ```
@@ -174,11 +174,11 @@ impl Coverage {
     /// cells, cut along a diagonal (a triangular patch: n² triangles, n the larger count; 0 counts as 1).
     ///
     /// Vertices are evaluated in `f64` and snapped to multiples of 2^-24 pixel, neighbours sharing theirs; from there
-    /// on all is exact, so a mesh has no cracks, and a centre is judged wrongly only within 2^-24 pixel of a border
-    /// of the mesh. Triangles without area cover nothing. How far the mesh is from the surface is the caller's choice:
-    /// see [`fine_mesh`](super::fine_mesh).
+    /// on all is exact. So the mesh has no cracks, and of an `I16F16` net a centre is judged wrongly only within 2^-24
+    /// pixel of the mesh's border or silhouette. Triangles without area cover nothing. How far the mesh is from the
+    /// surface is the caller's choice: see [`fine_mesh`](super::fine_mesh).
     ///
-    /// Cost: a few nanoseconds per triangle whose box holds no centre, which is most of them in a fine mesh.
+    /// Cost: about 10 ns a triangle on a host, and less than that for each centre in the box of one.
     pub fn add<C: Coord>(&mut self, net: SurfaceNet<'_, C>, mesh: (u32, u32)) {
         Mesh::new(net, mesh).for_each_triangle(|triangle| self.add_triangle(triangle));
     }

@@ -31,7 +31,7 @@ pub(super) fn factorial(n: usize) -> f64 {
     (1..=n).map(|k| k as f64).product()
 }
 
-/// B_i^n(t) = C(n,i) t^i (1−t)^(n−i) for i = 0 ..= n (Farin, Curves and Surfaces for CAGD, 5th ed., 5.1).
+/// B_i^n(t) = C(n,i) t^i (1−t)^(n−i) for i = 0 ..= n (Farin, "Curves and Surfaces for CAGD", 5th ed., section 4.1).
 pub(super) fn bernstein(n: usize, t: f64) -> Basis {
     let (rising, falling) = (powers(n, t), powers(n, 1.0 - t));
     let mut out = [0.0; MAX_DEGREE + 1];
@@ -57,11 +57,15 @@ fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
+/// The values at 0 ..= n with their indices.
+fn indexed(n: usize, values: Basis) -> impl Iterator<Item = (usize, f64)> + Clone {
+    values.into_iter().enumerate().take(n + 1)
+}
+
 /// Σ B_i^n(t) · `value`(i).
 fn curve_sum(n: usize, t: f64, value: impl Fn(usize) -> [f64; 3]) -> [f64; 3] {
-    let basis = bernstein(n, t);
     let mut sum = [0.0; 3];
-    for (i, weight) in basis.into_iter().enumerate().take(n + 1) {
+    for (i, weight) in indexed(n, bernstein(n, t)) {
         add_scaled(&mut sum, weight, value(i));
     }
     sum
@@ -69,25 +73,25 @@ fn curve_sum(n: usize, t: f64, value: impl Fn(usize) -> [f64; 3]) -> [f64; 3] {
 
 /// Σ B_i^m(r) B_j^h(s) · `value`(i, j).
 fn tensor_sum((m, h): (usize, usize), (r, s): (f64, f64), value: impl Fn(usize, usize) -> [f64; 3]) -> [f64; 3] {
-    let (by_r, by_s) = (bernstein(m, r), bernstein(h, s));
+    let by_s = indexed(h, bernstein(h, s));
     let mut sum = [0.0; 3];
-    for i in 0..=m {
-        for j in 0..=h {
-            add_scaled(&mut sum, by_r[i] * by_s[j], value(i, j));
+    for (i, by_r) in indexed(m, bernstein(m, r)) {
+        for (j, by_s) in by_s.clone() {
+            add_scaled(&mut sum, by_r * by_s, value(i, j));
         }
     }
     sum
 }
 
-/// Σ n!/(i!j!k!) u^i v^j w^k · `value`(j, k) over i + j + k = n (Farin, 5th ed., 17.3).
+/// Σ n!/(i!j!k!) u^i v^j w^k · `value`(j, k) over i + j + k = n (ibid., "Bézier Triangles").
 fn triangle_sum(n: usize, (u, v): (f64, f64), value: impl Fn(usize, usize) -> [f64; 3]) -> [f64; 3] {
-    let (by_u, by_v, by_w) = (powers(n, u), powers(n, v), powers(n, 1.0 - u - v));
+    let (by_u, by_w) = (powers(n, u), powers(n, 1.0 - u - v));
     let mut sum = [0.0; 3];
-    for j in 0..=n {
-        for k in 0..=n - j {
+    for (j, by_v) in indexed(n, powers(n, v)) {
+        for (k, by_w) in indexed(n - j, by_w) {
             let i = n - j - k;
             let arrangements = factorial(n) / (factorial(i) * factorial(j) * factorial(k));
-            add_scaled(&mut sum, arrangements * by_u[i] * by_v[j] * by_w[k], value(j, k));
+            add_scaled(&mut sum, arrangements * by_u[i] * by_v * by_w, value(j, k));
         }
     }
     sum
@@ -312,6 +316,24 @@ mod tests {
             f64::from_bits(tie.to_bits().wrapping_add_signed(if halves == 0 { 0 } else { last_places }))
         });
         prop_oneof![near_ties, -33_000.0..33_000.0, 32_766.9..32_767.1, -32_767.1..-32_766.9, -1e-300..1e-300]
+    }
+
+    #[test]
+    fn ties_go_up_and_only_ties() {
+        // In units of 2^-16; 0.49999999999999994 + 0.5 rounds to 1 in f64.
+        for (value, want) in [
+            (0.5, 1),
+            (0.49999999999999994, 0),
+            (-0.5, 0),
+            (-0.5000000000000001, -1),
+            (-0.49999999999999994, 0),
+            (-5e-324 * 65536.0, 0),
+            (-1.5, -1),
+            (2147418111.5, 2147418112),
+            (2147418111.4999998, 2147418111),
+        ] {
+            assert_eq!(fixed_half_up(value / 65536.0).map(I16F16::to_bits), Some(want), "{value}");
+        }
     }
 
     #[test]

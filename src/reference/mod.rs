@@ -2,8 +2,8 @@
 //!
 //! In come the same control nets that the engine takes; out go points, derivatives, normals, shades and the set of
 //! pixel centres that a surface covers. It promises independence: of the rest of the crate it reads control points
-//! and degrees, nothing else, and it evaluates the defining sums directly. Agreement with the engine is therefore
-//! evidence. It promises no speed on a target: it has a heap, floats and `std`.
+//! and degrees, nothing else, and it evaluates the defining sums directly; only `audit` runs the renderer, to compare.
+//! Agreement with the engine is therefore evidence. It promises nothing for a target: it has a heap, floats and `std`.
 //!
 //! | file | comes in → goes out |
 //! |---|---|

@@ -64,12 +64,11 @@ impl Light {
         self.ambient
     }
 
-    /// The level of a surface with this normal vector, of any length, turned to the viewer.
+    /// The level of a surface with this normal vector, of any length.
     ///
-    /// Components are below 2^15, so the dot product with a unit vector is below √3·2^30 and fits 31 bits.
+    /// Components are at most 2^15, so the dot product with a unit vector is at most √3·2^30 and fits 31 bits.
     pub(super) fn level(&self, normal: [i32; 3]) -> u8 {
-        let sign = if normal[2] > 0 { -1 } else { 1 };
-        let dot = sign * normal.iter().zip(&self.direction).map(|(n, l)| n * l).sum::<i32>();
+        let dot = normal.iter().zip(&self.direction).map(|(n, l)| n * l).sum::<i32>();
         let square: u32 = normal.iter().map(|n| n.unsigned_abs().pow(2)).sum();
         let length = square.isqrt() << 7;
         let above = u32::from(255 - self.ambient) * (dot.max(0) as u32 >> 8) + length / 2;
@@ -77,16 +76,19 @@ impl Light {
     }
 }
 
-/// The normal U × V with components below 2^15, up to a positive factor; `None` where it vanishes.
+/// The normal U × V, turned to the viewer, with components of at most 2^15; `None` where it vanishes.
+///
+/// It is turned by the sign of the untruncated z: at a silhouette the level jumps with it.
 pub(super) fn normal<W: Word>([u, v]: [[W; 3]; 2]) -> Option<[i32; 3]> {
     let (u, v) = (truncate(u, 30), truncate(v, 30));
     let [a, b] = [u, v].map(|t| t.map(i64::from));
     // Two products of 30-bit numbers stay below 2^61.
     let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let cross = if cross[2] > 0 { cross.map(|c| -c) } else { cross };
     (cross != [0; 3]).then(|| truncate(cross, 15))
 }
 
-/// The vector with its components shifted right by one common amount, so that they fit `bits` bits and a sign.
+/// The vector with its components shifted right by one common amount: from −2^bits to 2^bits − 1.
 fn truncate<W: Word>(v: [W; 3], bits: u32) -> [i32; 3] {
     let magnitude = v.iter().fold(W::ZERO, |all, c| all | (*c ^ (*c >> (<W as Word>::BITS - 1) as usize)));
     let used = <W as Word>::BITS - magnitude.leading_zeros();
@@ -109,7 +111,7 @@ mod tests {
     #[test]
     fn facing_the_light_is_255_and_turned_away_is_ambient() {
         let light = Light::towards(0, 0, -1, 40).unwrap();
-        for n in [[0, 0, -5], [0, 0, 32767], [0, 0, 1]] {
+        for n in [[0, 0, -5], [0, 0, -32768], [0, 0, -1]] {
             assert_eq!(light.level(n), 255, "{n:?}");
         }
         assert_eq!(light.level([32767, 0, 0]), 40);
@@ -119,10 +121,10 @@ mod tests {
 
     #[test]
     fn truncation_keeps_the_direction() {
-        assert_eq!(truncate([1_i64 << 40, -(1 << 41), 3], 15), [1 << 13, -(1 << 14), 0]);
+        assert_eq!(truncate([1_i64 << 40, -(1 << 41), 3], 15), [1 << 14, -(1 << 15), 0]);
         assert_eq!(truncate([i64::MIN, i64::MAX, -1], 30), [-(1 << 30), (1 << 30) - 1, -1]);
         assert_eq!(truncate([7_i128, -8, 0], 30), [7, -8, 0]);
         assert_eq!(normal([[1_i64, 0, 0], [2, 0, 0]]), None);
-        assert_eq!(normal([[1_i128 << 100, 0, 0], [0, 1, 0]]), Some([0, 0, 1 << 14]));
+        assert_eq!(normal([[1_i128 << 100, 0, 0], [0, 1, 0]]), Some([0, 0, -(1 << 15)]));
     }
 }

@@ -32,6 +32,9 @@ mod pen;
 mod scene;
 mod tile;
 
+#[cfg(all(test, feature = "std"))]
+mod tests;
+
 pub use frame::{Band, Frame, Statistics};
 pub use light::Light;
 pub use scene::{Scene, Style};

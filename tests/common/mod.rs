@@ -1,6 +1,9 @@
 //! The oracle of the exact tests: direct Bernstein sums in big integers, written without the crate's engine.
 #![allow(dead_code, reason = "each test binary uses a part")]
 
+pub(crate) mod basis;
+pub(crate) mod draw;
+
 use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::num::I16F16;
 use num_bigint::{BigInt, Sign};

@@ -1,0 +1,291 @@
+//! P1 and P4 on the linked firmware: `examples/fw_smoke.rs` is built for each bare-metal target, run under QEMU and
+//! compared with an exact oracle; its symbols show no panic, no soft float and no allocator.
+//!
+//! What is not installed (a target, QEMU) is skipped with a message, or fails where `REQUIRE_FIRMWARE=1`.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../examples/fw_smoke.rs"]
+#[allow(dead_code, reason = "its `main` is for `cargo run`")]
+mod fw_smoke;
+
+use embedded_surfaces::geometry::Point3;
+use object::{Object, ObjectSymbol};
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+/// How long a firmware may run before it is killed; it takes a fraction of a second.
+const WATCHDOG: Duration = Duration::from_secs(30);
+
+#[test]
+fn thumbv6m() {
+    check("thumbv6m-none-eabi");
+}
+
+#[test]
+fn thumbv7m() {
+    check("thumbv7m-none-eabi");
+}
+
+#[test]
+fn thumbv7em() {
+    check("thumbv7em-none-eabihf");
+}
+
+#[test]
+fn riscv32imc() {
+    check("riscv32imc-unknown-none-elf");
+}
+
+/// Builds the library alone and the firmware, reads its symbols, runs it and compares what it prints.
+fn check(target: &str) {
+    if !target_is_installed(target) {
+        return skip(target, &format!("the Rust target (rustup target add {target})"));
+    }
+    cargo_build(target, &["--lib", "--no-default-features"]);
+    let image = cargo_build(target, &["--example", "fw_smoke"]).join("examples/fw_smoke");
+
+    let names = symbols(&std::fs::read(&image).unwrap());
+    assert!(names.iter().any(|name| name.contains("embedded_surfaces")), "{target}: the image is stripped");
+    let offences: Vec<_> = names.iter().filter_map(|name| Some((offence(name)?, name))).collect();
+    assert!(offences.is_empty(), "{target}: {offences:#?}");
+
+    let runner = runner(&std::fs::read_to_string(Path::new(ROOT).join(".cargo/config.toml")).unwrap(), target);
+    if Command::new(&runner[0]).arg("--version").output().is_err() {
+        return skip(target, &runner[0]);
+    }
+    assert_eq!(run(&runner, &image), expected_line(), "{target}");
+}
+
+/// Says on the real standard error, which the test harness does not capture, that something is not checked.
+fn skip(target: &str, missing: &str) {
+    let required = std::env::var_os("REQUIRE_FIRMWARE").is_some_and(|value| value == "1");
+    assert!(!required, "{target}: {missing} is missing, and REQUIRE_FIRMWARE=1");
+    writeln!(std::io::stderr(), "firmware test of {target} skipped: {missing} is missing").unwrap();
+}
+
+fn target_is_installed(target: &str) -> bool {
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let output = Command::new(rustc).current_dir(ROOT).args(["--print", "target-libdir", "--target", target]).output();
+    output.is_ok_and(|o| o.status.success() && Path::new(String::from_utf8_lossy(&o.stdout).trim()).is_dir())
+}
+
+/// Runs `cargo build --release` in a target directory of its own (the outer cargo may hold the lock of the usual one)
+/// and returns the folder with the results.
+fn cargo_build(target: &str, what: &[&str]) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("firmware");
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.current_dir(ROOT).args(["build", "--release", "--locked", "--quiet", "--target", target]);
+    cargo.args(what).arg("--target-dir").arg(&folder);
+    // These would replace the link arguments of .cargo/config.toml.
+    for variable in ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "CARGO_BUILD_RUSTFLAGS", "CARGO_BUILD_TARGET"] {
+        cargo.env_remove(variable);
+    }
+    let output = cargo.output().unwrap();
+    assert!(output.status.success(), "{target} {what:?}:\n{}", String::from_utf8_lossy(&output.stderr));
+    folder.join(target).join("release")
+}
+
+/// The words of `runner = "…"` in `[target.NAME]`: what `cargo run` uses.
+fn runner(config: &str, target: &str) -> Vec<String> {
+    let section =
+        config.split("\n[").find_map(|s| s.trim_start_matches('[').strip_prefix(&format!("target.{target}]")));
+    let line = section.and_then(|s| s.lines().find_map(|line| line.strip_prefix("runner = ")));
+    line.expect("a runner").trim_matches('"').split_whitespace().map(String::from).collect()
+}
+
+/// What the firmware prints. Fails when it does not end well in time.
+fn run(runner: &[String], image: &Path) -> String {
+    let mut qemu = Command::new(&runner[0]);
+    qemu.args(&runner[1..]).arg(image).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = qemu.spawn().unwrap();
+    let (out, err) = (gather(child.stdout.take().unwrap()), gather(child.stderr.take().unwrap()));
+    let start = Instant::now();
+    let status = loop {
+        match child.try_wait().unwrap() {
+            None if start.elapsed() > WATCHDOG => {
+                child.kill().unwrap();
+                break child.wait().unwrap();
+            }
+            None => std::thread::sleep(Duration::from_millis(10)),
+            Some(status) => break status,
+        }
+    };
+    let (out, err) = (out.join().unwrap(), err.join().unwrap());
+    assert!(status.success(), "{status}; printed {out:?}, QEMU says {err}");
+    out
+}
+
+fn gather(mut pipe: impl Read + Send + 'static) -> std::thread::JoinHandle<String> {
+    std::thread::spawn(move || {
+        let mut bytes = Vec::new();
+        pipe.read_to_end(&mut bytes).unwrap();
+        String::from_utf8_lossy(&bytes).into_owned()
+    })
+}
+
+/// The names in the symbol table of an ELF file.
+fn symbols(elf: &[u8]) -> Vec<String> {
+    let file = object::File::parse(elf).unwrap();
+    file.symbols().filter_map(|symbol| symbol.name().ok().map(String::from)).collect()
+}
+
+/// Why a symbol may not be in a firmware; `None` for one that may. The panic handler alone is no offence: it is
+/// required, and only `core::panicking` calls it.
+fn offence(name: &str) -> Option<&'static str> {
+    const ALLOCATOR: [&str; 5] = ["__rust_alloc", "__rust_dealloc", "__rust_realloc", "__rg_", "__rdl_"];
+    const C_ALLOCATOR: [&str; 4] = ["malloc", "calloc", "realloc", "free"];
+    if name.contains("panicking") {
+        Some("a panic")
+    } else if is_soft_float(name) {
+        Some("soft float")
+    } else if ALLOCATOR.iter().any(|part| name.contains(part)) || C_ALLOCATOR.contains(&name) {
+        Some("an allocator")
+    } else {
+        None
+    }
+}
+
+/// The run-time ABI of ARM (`__aeabi_dadd`, `__aeabi_ui2f`, …) or of GCC (`__adddf3`, `__floatunsisf`, …).
+fn is_soft_float(name: &str) -> bool {
+    const OPERATIONS: [&str; 19] = [
+        "add", "sub", "mul", "div", "neg", "eq", "ne", "lt", "le", "gt", "ge", "cmp", "unord", "powi", "fix", "fixuns",
+        "float", "floatun", "extend",
+    ];
+    if let Some(arm) = name.strip_prefix("__aeabi_") {
+        return arm.starts_with(['f', 'd'])
+            || ["cf", "cd"].iter().any(|c| arm.starts_with(c))
+            || arm.contains("2f")
+            || arm.contains("2d");
+    }
+    // Modes are pairs of letters: half, single, double, tetra; float or integer.
+    let is_mode = |pair: &[u8]| matches!(pair, [b'h' | b's' | b'd' | b't', b'f' | b'i']);
+    let modes = |rest: &str| {
+        let rest = rest.trim_end_matches(|c: char| c.is_ascii_digit());
+        !rest.is_empty() && rest.contains('f') && rest.len() % 2 == 0 && rest.as_bytes().chunks(2).all(is_mode)
+    };
+    let gcc = name.strip_prefix("__").unwrap_or("");
+    OPERATIONS.iter().chain(&["trunc"]).any(|operation| gcc.strip_prefix(operation).is_some_and(modes))
+}
+
+/// floor(S + 1/2) of the patch's lattice by direct Bernstein sums: [i, j, x, y, z] in row order.
+fn oracle(points: &[[Point3; 4]; 4], n: i128) -> Vec<[i128; 5]> {
+    let bernstein = |k: usize, i: i128| [1, 3, 3, 1][k] * i.pow(k as u32) * (n - i).pow(3 - k as u32);
+    let mut lattice = Vec::new();
+    for (j, i) in (0..=n).flat_map(|j| (0..=n).map(move |i| (j, i))) {
+        let mut sum = [0; 3];
+        for (a, b) in (0..4).flat_map(|a| (0..4).map(move |b| (a, b))) {
+            for (sum, c) in sum.iter_mut().zip(points[a][b].to_array()) {
+                *sum += bernstein(a, i) * bernstein(b, j) * i128::from(c.to_bits());
+            }
+        }
+        let one = n.pow(6) << 16;
+        let [x, y, z] = sum.map(|s| (2 * s + one).div_euclid(2 * one));
+        lattice.push([i, j, x, y, z]);
+    }
+    lattice
+}
+
+/// The line that every target has to print, from the oracle.
+fn expected_line() -> String {
+    let lattice = oracle(fw_smoke::PATCH.points(), fw_smoke::STEPS.into());
+    let sum = lattice.as_flattened().iter().fold(0, |sum, value| fw_smoke::append(sum, *value as u32));
+    format!("fw_smoke: {} points, checksum {sum:08x}\n", lattice.len())
+}
+
+#[test]
+fn the_host_prints_what_the_oracle_says() {
+    let mut line = String::new();
+    fw_smoke::report(&mut line).unwrap();
+    assert_eq!(line, expected_line());
+}
+
+#[test]
+fn the_checksum_sees_every_point_and_its_place() {
+    let mut values = oracle(fw_smoke::PATCH.points(), 3).concat();
+    let checksum = |values: &[i128]| values.iter().fold(0, |sum, v| fw_smoke::append(sum, *v as u32));
+    let whole = checksum(&values);
+    for k in 1..values.len() {
+        if values[k - 1] != values[k] {
+            values.swap(k - 1, k);
+            assert_ne!(checksum(&values), whole, "values {} and {k} swapped", k - 1);
+            values.swap(k - 1, k);
+        }
+        values[k] += 1;
+        assert_ne!(checksum(&values), whole, "value {k} changed");
+        values[k] -= 1;
+    }
+}
+
+#[test]
+fn the_gate_flags_panics_soft_float_and_allocators() {
+    let forbidden = [
+        ("_ZN4core9panicking5panic17h0123456789abcdefE", "a panic"),
+        ("_RNvNtCseold96UKqg_4core9panicking18panic_bounds_check", "a panic"),
+        ("core::panicking::panic_const::panic_const_div_by_zero", "a panic"),
+        ("__aeabi_fadd", "soft float"),
+        ("__aeabi_dmul", "soft float"),
+        ("__aeabi_ui2d", "soft float"),
+        ("__aeabi_f2lz", "soft float"),
+        ("__aeabi_cdcmple", "soft float"),
+        ("__addsf3", "soft float"),
+        ("__divdf3", "soft float"),
+        ("__ltsf2", "soft float"),
+        ("__floatunsidf", "soft float"),
+        ("__fixunssfdi", "soft float"),
+        ("__truncdfsf2", "soft float"),
+        ("__extendhfsf2", "soft float"),
+        ("__powidf2", "soft float"),
+        ("__rust_alloc", "an allocator"),
+        ("_RNvCs1_7___rustc12___rust_alloc", "an allocator"),
+        ("_RNvCs1_7___rustc14___rust_dealloc", "an allocator"),
+        ("__rg_alloc", "an allocator"),
+        ("__rdl_realloc", "an allocator"),
+        ("malloc", "an allocator"),
+    ];
+    for (name, why) in forbidden {
+        assert_eq!(offence(name), Some(why), "{name}");
+    }
+}
+
+#[test]
+fn the_gate_lets_integers_and_the_handler_pass() {
+    let allowed = [
+        "main",
+        "rust_begin_unwind",
+        "_RNvCs1_7___rustc17rust_begin_unwind",
+        "__aeabi_lmul",
+        "__aeabi_uidivmod",
+        "__aeabi_idiv",
+        "__aeabi_ldivmod",
+        "__aeabi_memcpy8",
+        "__aeabi_llsl",
+        "__muldi3",
+        "__divsi3",
+        "__multi3",
+        "__udivmoddi4",
+        "__clzsi2",
+        // A hash may spell anything.
+        "_ZN17embedded_surfaces7forward4walk16difference_table17hebbad454a78df330E",
+    ];
+    for name in allowed {
+        assert_eq!(offence(name), None, "{name}");
+    }
+}
+
+#[test]
+fn symbols_are_read_from_this_very_program() {
+    let image = std::fs::read(std::env::current_exe().unwrap()).unwrap();
+    // A host program allocates and panics: the gate must see it.
+    let found: Vec<_> = symbols(&image).iter().filter_map(|name| offence(name)).collect();
+    assert!(found.contains(&"a panic") && found.contains(&"an allocator"), "{found:?}");
+}
+
+#[test]
+fn runners_come_from_the_section_of_their_target() {
+    let config = "[target.a]\nrunner = \"one -x\"\n\n[target.b]\nrustflags = [\"-y\"]\nrunner = \"two -kernel\"\n";
+    assert_eq!(runner(config, "a"), ["one", "-x"]);
+    assert_eq!(runner(config, "b"), ["two", "-kernel"]);
+}

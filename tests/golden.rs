@@ -1,0 +1,175 @@
+//! The `golden` tool, run as a user runs it: answers against exact rationals, malformed files against exit 2.
+//!
+//! `tests/golden/lattice.json`: the expected points are direct Bernstein sums in exact rationals, rounded half up.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+/// The tool, beside this test's own executable; built where only this test was asked for.
+fn tool() -> &'static Path {
+    static TOOL: OnceLock<PathBuf> = OnceLock::new();
+    TOOL.get_or_init(|| {
+        let test = std::env::current_exe().unwrap();
+        let tool = test.parent().unwrap().with_file_name("examples").join("golden");
+        if !tool.exists() {
+            let target = test.ancestors().nth(3).unwrap();
+            let mut cargo = Command::new(env!("CARGO"));
+            cargo.args(["build", "--example", "golden", "--target-dir"]).arg(target);
+            assert!(cargo.current_dir(env!("CARGO_MANIFEST_DIR")).status().unwrap().success());
+        }
+        tool
+    })
+}
+
+fn golden(command: &str, case: &Path, extra: &[&str]) -> Output {
+    Command::new(tool()).arg(command).arg(case).args(extra).output().unwrap()
+}
+
+/// A case written to a file of its own.
+fn file(name: &str, text: &str) -> PathBuf {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.json"));
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+fn answer(output: &Output) -> Value {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn lattices_equal_exact_rationals() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/lattice.json");
+    let cases: Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+    let results = answer(&golden("lattice", &path, &[]));
+    let (cases, results) = (cases["cases"].as_array().unwrap(), results["results"].as_array().unwrap());
+    assert_eq!(cases.len(), results.len());
+    for (case, result) in cases.iter().zip(results) {
+        assert_eq!(case["name"], result["name"]);
+        for (key, expected) in case["expect"].as_object().unwrap() {
+            assert_eq!(&result[key], expected, "{key} of {}", case["name"]);
+        }
+    }
+    let error = results.last().unwrap()["message"].as_str().unwrap();
+    assert!(error.contains("(8, 8)") && error.contains("300 x 400") && error.contains("153 bits"), "{error}");
+}
+
+fn square() -> Value {
+    json!({"kind": "tensor", "degree": [1, 1], "ctrl": [[[2, 2, 0], [2, 9, 0]], [[9, 2, 0], [9, 9, 0]]]})
+}
+
+#[test]
+fn a_picture_is_written_and_counted() {
+    let case = json!({
+        "patch": square(), "size": [16, 12], "band": 5, "style": "flat", "color": [10, 200, 30],
+        "background": [1, 2, 3], "unknown": 7,
+    });
+    let png = Path::new(env!("CARGO_TARGET_TMPDIR")).join("square.png");
+    let output = golden("render", &file("square", &case.to_string()), &["-o", png.to_str().unwrap()]);
+    let expected = json!({"status": "ok", "points": 162, "pixels": 64, "pieces": 1, "splits": 0, "missed": 0});
+    assert_eq!(answer(&output), expected);
+    assert!(std::fs::read(&png).unwrap().starts_with(b"\x89PNG"));
+}
+
+#[test]
+fn views_map_the_model_to_the_screen() {
+    let mut case = json!({"patch": square(), "size": [40, 40], "style": "flat"});
+    // Seen along z, fitted: a square of 7 units fills half of 40 pixels, 10 ..= 30.
+    case["view"] = json!({"tilt": 0, "spin": 0, "fit": 0.5});
+    assert_eq!(answer(&golden("render", &file("fit", &case.to_string()), &[]))["pixels"], 21 * 21);
+    case["view"] = json!({"matrix": [[1, 0, 0, 0.5], [0, 2, 0, 1], [0, 0, 1, 0]]});
+    assert_eq!(answer(&golden("render", &file("matrix", &case.to_string()), &[]))["pixels"], 8 * 15);
+    case["view"] = json!({"matrix": [[1e6, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]});
+    let error = answer(&golden("render", &file("far", &case.to_string()), &[]));
+    assert_eq!(error["status"], "OutOfRange");
+    assert!(error["message"].as_str().unwrap().contains("2000000"), "{error}");
+}
+
+#[test]
+fn several_cases_give_several_results_and_pictures() {
+    let case =
+        json!({"ok_cases": [{"name": "a", "patch": square()}], "error_cases": [{"name": "b", "patch": square()}]});
+    let png = Path::new(env!("CARGO_TARGET_TMPDIR")).join("several.png");
+    let results = answer(&golden("render", &file("several", &case.to_string()), &["-o", png.to_str().unwrap()]));
+    assert_eq!(results["results"][1]["name"], "b");
+    assert!(png.with_file_name("several-0.png").exists() && png.with_file_name("several-1.png").exists());
+}
+
+/// A case with one member replaced.
+fn with(key: &str, value: Value) -> String {
+    let mut case = json!({"patch": square(), "steps": 4});
+    case[key] = value;
+    case.to_string()
+}
+
+#[test]
+fn what_is_wrong_exits_with_2_and_names_the_field() {
+    let mut patch = square();
+    let mut broken = |path: &str, value: Value| {
+        let old = patch.pointer(path).unwrap().clone();
+        *patch.pointer_mut(path).unwrap() = value;
+        let text = with("patch", patch.clone());
+        *patch.pointer_mut(path).unwrap() = old;
+        text
+    };
+    let cases = [
+        ("lattice", "{\"patch\": {\"kind\": \"tri\", \"degree\": 1, \"ctrl\": [[0, NaN, 0]]}}".into(), "patch.ctrl[0]"),
+        ("lattice", "{\"patch\": [1, 1e999]}".into(), "patch[1]"),
+        ("lattice", "{\"patch\": {} trailing".into(), "the case: expected"),
+        ("lattice", "[]".into(), "the case"),
+        ("lattice", "{}".into(), "patch"),
+        ("lattice", broken("/ctrl/1/0/2", json!(32768)), "patch.ctrl[1][0][2]"),
+        ("lattice", broken("/ctrl/1/0/2", json!("7")), "patch.ctrl[1][0][2]"),
+        ("lattice", broken("/ctrl/1/0/2", Value::Null), "patch.ctrl[1][0][2]"),
+        ("lattice", broken("/ctrl/1/0", json!([1, 2])), "patch.ctrl[1][0]"),
+        ("lattice", broken("/ctrl/1", json!([[1, 2, 3]])), "patch.ctrl[1]"),
+        ("lattice", broken("/ctrl", json!([[[1, 2, 3]]])), "patch.ctrl"),
+        ("lattice", broken("/degree", json!([1, 9])), "patch.degree[1]"),
+        ("lattice", broken("/degree", json!([0, 1])), "patch.degree[0]"),
+        ("lattice", broken("/degree", json!(1)), "patch.degree"),
+        ("lattice", broken("/kind", json!("quad")), "patch.kind"),
+        ("lattice", with("steps", json!(0)), "steps"),
+        ("lattice", with("steps", json!([3, -1])), "steps[1]"),
+        ("lattice", with("steps", json!(2.5)), "steps"),
+        ("lattice", with("steps", json!("fine")), "steps"),
+        ("lattice", with("steps", json!([1, 2, 3])), "steps"),
+        ("render", with("size", json!([0, 4])), "size[0]"),
+        ("render", with("size", json!(4)), "size"),
+        ("render", with("band", json!(0)), "band"),
+        ("render", with("style", json!("wire")), "style"),
+        ("render", with("style", json!("net")), "style"),
+        ("render", with("fill", json!({"grid": 1})), "fill"),
+        ("render", with("color", json!([1, 2, 256])), "color[2]"),
+        ("render", with("background", json!([1, 2])), "background"),
+        ("render", with("view", json!({"perspective": 2})), "view.perspective"),
+        ("render", with("view", json!({"matrix": [[1, 2, 3, 4]]})), "view.matrix"),
+        ("render", with("view", json!({"tilt": "up"})), "view.tilt"),
+        ("render", with("view", json!({"fit": 0})), "view.fit"),
+        ("render", with("view", json!(3)), "view"),
+        (
+            "render",
+            json!({"vertices": [[0, 0, 0]], "patches": [[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1]]}).to_string(),
+            "patches[0][15]",
+        ),
+        (
+            "render",
+            json!({"patches": [{"kind": "tri", "degree": 1, "ctrl": [], "weights": []}]}).to_string(),
+            "patches[0].weights",
+        ),
+    ];
+    for (index, (command, text, field)) in cases.into_iter().enumerate() {
+        let output = golden(command, &file(&format!("malformed-{index}"), &text), &[]);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{text}: {message}");
+        assert!(message.contains(field), "{text}: {message}");
+        assert!(output.stdout.is_empty());
+    }
+    for arguments in [["lattice", "no-such-file.json"], ["conquer", "x.json"]] {
+        let output = Command::new(tool()).args(arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        assert!(!output.stderr.is_empty());
+    }
+}
