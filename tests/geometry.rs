@@ -238,20 +238,18 @@ fn front_and_top_views_are_exact() {
     let shown = |tilt, spin, fit| {
         let view = View { tilt: Angle::from_degrees(tilt), spin: Angle::from_degrees(spin) };
         let map = view.fit(&model, 320, 240, fit).unwrap();
-        let at = |k: usize| map.apply(&model[k]).unwrap().to_array().map(|c| c.to_num::<f64>());
-        (at(0), at(1), at(2), at(4))
+        [0, 1, 2, 4].map(|k: usize| map.apply(&model[k]).unwrap())
     };
+    let points = |all: [[i16; 3]; 4]| all.map(|[x, y, z]| Point3::from_ints(x, y, z));
     // From the front, x to the right, z up, y away; 3 · 80 pixels fill the height.
     let front = shown(-90, 0, I16F16::ONE);
-    assert_eq!(front, ([0.0, 240.0, -80.0], [320.0, 240.0, -80.0], [0.0, 240.0, 80.0], [0.0, 0.0, -80.0]));
+    assert_eq!(front, points([[0, 240, -80], [320, 240, -80], [0, 240, 80], [0, 0, -80]]));
     // From above, y up, z towards the viewer; 4 · 80 pixels fill the width.
     let top = shown(0, 0, I16F16::ONE);
-    assert_eq!(top, ([0.0, 200.0, 120.0], [320.0, 200.0, 120.0], [0.0, 40.0, 120.0], [0.0, 200.0, -120.0]));
+    assert_eq!(top, points([[0, 200, 120], [320, 200, 120], [0, 40, 120], [0, 200, -120]]));
     // Half of it, and turned by a quarter: y along −x.
-    let turned = shown(0, 90, I16F16::from_num(0.5));
-    assert_eq!(turned.0, [190.0, 180.0, 45.0]);
-    assert_eq!(turned.1, [190.0, 60.0, 45.0]);
-    assert_eq!(turned.2, [130.0, 180.0, 45.0]);
+    let turned = shown(0, 90, I16F16::from_bits(1 << 15));
+    assert_eq!(turned, points([[190, 180, 45], [190, 60, 45], [130, 180, 45], [190, 180, -45]]));
     let rotation = View { tilt: Angle::ZERO, spin: Angle::ZERO }.rotation().unwrap();
     assert_eq!(rotation, Affine::scaling(I32F32::ONE, -I32F32::ONE, -I32F32::ONE));
     assert_eq!(View::default(), View { tilt: Angle::from_degrees(-60), spin: Angle::from_degrees(30) });
@@ -261,10 +259,10 @@ fn front_and_top_views_are_exact() {
 fn flat_models_fit_by_the_direction_that_has_an_extent() {
     let front = View { tilt: Angle::from_degrees(-90), spin: Angle::ZERO };
     let line = [Point3::from_ints(0, 0, 5), Point3::from_ints(10, 7, 5)];
-    let map = front.fit(&line, 100, 60, I16F16::ONE).unwrap();
+    let map = front.fit(line, 100, 60, I16F16::ONE).unwrap();
     assert_eq!(map.apply(&line[1]), Ok(Point3::from_ints(100, 30, 35)));
     let upright = [Point3::from_ints(3, 0, 0), Point3::from_ints(3, 0, 20)];
-    assert_eq!(front.fit(&upright, 100, 60, I16F16::ONE).unwrap().apply(&upright[1]), Ok(Point3::from_ints(50, 0, 0)));
+    assert_eq!(front.fit(upright, 100, 60, I16F16::ONE).unwrap().apply(&upright[1]), Ok(Point3::from_ints(50, 0, 0)));
 }
 
 /// One test per error, with the text.

@@ -19,6 +19,7 @@ use num_traits::{One, Signed, ToPrimitive, Zero};
 use proptest::prelude::*;
 
 type Net = Vec<Point3<I16F16>>;
+type Index = (usize, usize, usize);
 
 fn largest(values: impl IntoIterator<Item = BigRational>) -> BigRational {
     values.into_iter().map(|v| v.abs()).max().unwrap_or_else(BigRational::zero)
@@ -35,7 +36,7 @@ fn floor_plus_one(bound: &BigRational) -> u32 {
 /// Net edges of a triangle along one axis: both parameter directions, then the third family.
 fn triangle_edges(points: &Net, n: usize, axis: usize) -> [Vec<BigRational>; 3] {
     let at = |i, j, k| coordinate(&points[triangle_index(n, (i, j, k))], axis);
-    let family = |edge: fn((usize, usize, usize)) -> [(usize, usize, usize); 2]| {
+    let family = |edge: fn(Index) -> [Index; 2]| {
         let differences = triangle_indices(n - 1).map(edge).map(|[a, b]| at(a.0, a.1, a.2) - at(b.0, b.1, b.2));
         differences.collect::<Vec<_>>()
     };
@@ -151,6 +152,11 @@ fn within_one(a: &[BigRational; 2], b: &[BigRational; 2]) -> bool {
     a.iter().zip(b).all(|(a, b)| (a - b).abs() < BigRational::one())
 }
 
+/// One of `count` cells, by a fraction of 2^16.
+fn cell(fraction: u64, count: u32) -> u32 {
+    ((fraction * u64::from(count)) >> 16) as u32
+}
+
 /// A net of pixel-sized coordinates, turned every way.
 fn small_net(len: usize) -> impl Strategy<Value = Net> {
     let c = || -(60_i32 << 16)..60 << 16;
@@ -164,13 +170,13 @@ proptest! {
     #[test]
     fn corners_of_triangulated_cells_differ_by_less_than_one_unit(
         points in small_net(16), m in 1_usize..=3, h in 1_usize..=3,
-        cells in prop::collection::vec((0.0..1.0, 0.0..1.0), 24),
+        cells in prop::collection::vec((0_u64..1 << 16, 0_u64..1 << 16), 24),
     ) {
         let points = points[..(m + 1) * (h + 1)].to_vec();
         let steps = Steps::hole_free(tensor_net(&points, (m, h)));
         let mut diagonals = [true; 2];
         for (i, j) in cells {
-            let (i, j) = ((i * f64::from(steps.r())) as u32, (j * f64::from(steps.s())) as u32);
+            let (i, j) = (cell(i, steps.r()), cell(j, steps.s()));
             let corner = |di, dj| tensor_at(&points, (m, h), steps, (i + di, j + dj));
             let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)];
             prop_assert!(within_one(&a, &b) && within_one(&a, &c) && within_one(&b, &d) && within_one(&c, &d));
@@ -181,13 +187,13 @@ proptest! {
 
     #[test]
     fn corners_of_triangle_cells_differ_by_less_than_one_unit(
-        points in small_net(10), n in 1_usize..=3, cells in prop::collection::vec((0.0..1.0, 0.0..1.0), 24),
+        points in small_net(10), n in 1_usize..=3, cells in prop::collection::vec((0_u64..1 << 16, 0_u64..1 << 16), 24),
     ) {
         let points = points[..(n + 1) * (n + 2) / 2].to_vec();
         let steps = Steps::hole_free(triangle_net(&points, n)).r();
         for (i, j) in cells {
-            let i = (i * f64::from(steps)) as u32;
-            let j = (j * f64::from(steps - i)) as u32;
+            let i = cell(i, steps);
+            let j = cell(j, steps - i);
             let corner = |i: u32, j: u32| {
                 let [basis, ..] = triangle_basis(n, Barycentric::new(i, j, steps - i - j).unwrap());
                 [0, 1].map(|axis| basis.value(&points, None, axis))

@@ -133,8 +133,8 @@ impl Budget {
             n.checked_mul(u128::from(steps).checked_pow(exponent as u32)?)
         });
         let accumulator = scale.and_then(|n| n.checked_mul(range)).map(|values| match 128 - values.leading_zeros() {
-            ..=32 => Accumulator::I32,
-            ..=64 => Accumulator::I64,
+            0..=32 => Accumulator::I32,
+            33..=64 => Accumulator::I64,
             _ => Accumulator::I128,
         });
         match (scale, accumulator) {

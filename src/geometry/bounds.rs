@@ -5,8 +5,6 @@ use crate::num::{Coord, I16F16};
 
 /// A closed box: the smallest and the largest coordinate along each axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "defmt", defmt(bound = "C: crate::num::Coord"))]
 pub struct Bounds<C = I16F16> {
     /// The corner with the smallest coordinates.
     pub min: Point3<C>,
@@ -36,5 +34,12 @@ impl<C: Coord> Bounds<C> {
             min: Point3::new(a.min.x.min(b.min.x), a.min.y.min(b.min.y), a.min.z.min(b.min.z)),
             max: Point3::new(a.max.x.max(b.max.x), a.max.y.max(b.max.y), a.max.z.max(b.max.z)),
         }
+    }
+}
+
+#[cfg(feature = "defmt")]
+impl<C: Coord> defmt::Format for Bounds<C> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "{} ..= {}", self.min, self.max);
     }
 }

@@ -82,8 +82,8 @@ impl<'a, S: Surface, C: Shade, const BUFFER: usize> Model<'a, S, C, BUFFER> {
     pub fn translate_mut(&mut self, by: Point) -> &mut Self {
         // `Rectangle` adds without checks: stay far from the ends of i32.
         const FAR: i32 = 1 << 29;
-        self.offset.x = self.offset.x.saturating_add(by.x).max(-FAR).min(FAR);
-        self.offset.y = self.offset.y.saturating_add(by.y).max(-FAR).min(FAR);
+        self.offset.x = self.offset.x.saturating_add(by.x).clamp(-FAR, FAR);
+        self.offset.y = self.offset.y.saturating_add(by.y).clamp(-FAR, FAR);
         self
     }
 

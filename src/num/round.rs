@@ -15,10 +15,7 @@ pub(crate) const fn div_half_up(value: i128, divisor: i128) -> Option<i128> {
     if divisor <= 0 {
         return None;
     }
-    match (2 * value + divisor).checked_div_euclid(2 * divisor) {
-        Some(quotient) => Some(quotient),
-        None => None,
-    }
+    (2 * value + divisor).checked_div_euclid(2 * divisor)
 }
 
 /// Binomial coefficients: `BINOMIAL[n][k]` = C(n, k), n ≤ 16; 0 for k > n.

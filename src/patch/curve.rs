@@ -15,8 +15,6 @@ use crate::num::{Coord, I16F16, I32F32};
 /// # Ok::<(), embedded_surfaces::patch::NetError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "defmt", defmt(bound = "C: crate::num::Coord"))]
 pub struct Curve<const K: usize, C = I16F16> {
     pub(super) points: [Point3<C>; K],
 }

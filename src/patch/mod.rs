@@ -32,6 +32,8 @@ mod convert;
 mod curve;
 mod error;
 mod eval;
+#[cfg(feature = "defmt")]
+mod format;
 mod net;
 mod parameter;
 mod rational;

@@ -6,16 +6,12 @@ use crate::num::{Coord, I16F16, I32F32, bits_i16f16, bits_i32f32};
 
 /// A Bézier curve: the control points in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "defmt", defmt(bound = "C: crate::num::Coord"))]
 pub struct CurveNet<'a, C = I16F16> {
     points: &'a [Point3<C>],
 }
 
 /// A triangular Bézier patch: b\[i,j,k\] with i descending, then j descending.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "defmt", defmt(bound = "C: crate::num::Coord"))]
 pub struct TriangleNet<'a, C = I16F16> {
     degree: u8,
     points: &'a [Point3<C>],
@@ -23,8 +19,6 @@ pub struct TriangleNet<'a, C = I16F16> {
 
 /// A tensor-product Bézier patch of degrees (m, h): point (i, j) at index i·(h+1) + j.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "defmt", defmt(bound = "C: crate::num::Coord"))]
 pub struct TensorNet<'a, C = I16F16> {
     degrees: (u8, u8),
     points: &'a [Point3<C>],
@@ -32,8 +26,6 @@ pub struct TensorNet<'a, C = I16F16> {
 
 /// A patch of either kind, with the degree erased: what scenes and the engine take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "defmt", defmt(bound = "C: crate::num::Coord"))]
 pub enum SurfaceNet<'a, C = I16F16> {
     /// A triangular patch.
     Triangle(TriangleNet<'a, C>),

@@ -200,27 +200,3 @@ impl<const M: usize, const H: usize> Tensor<M, H> {
         Ok(out)
     }
 }
-
-#[cfg(feature = "defmt")]
-mod format {
-    use super::{Coord, RationalCurve, RationalTensor, RationalTriangle};
-
-    impl<const K: usize, C: Coord> defmt::Format for RationalCurve<K, C> {
-        fn format(&self, f: defmt::Formatter<'_>) {
-            defmt::write!(f, "Rational({}, weights {}/2^16)", self.net, self.weights.map(|w| w.to_bits()));
-        }
-    }
-
-    impl<const N: usize, const LEN: usize, C: Coord> defmt::Format for RationalTriangle<N, LEN, C> {
-        fn format(&self, f: defmt::Formatter<'_>) {
-            defmt::write!(f, "Rational({}, weights {}/2^16)", self.net, self.weights.map(|w| w.to_bits()));
-        }
-    }
-
-    impl<const M: usize, const H: usize, C: Coord> defmt::Format for RationalTensor<M, H, C> {
-        fn format(&self, f: defmt::Formatter<'_>) {
-            let weights = self.weights.map(|row| row.map(|w| w.to_bits()));
-            defmt::write!(f, "Rational({}, weights {}/2^16)", self.net, weights);
-        }
-    }
-}

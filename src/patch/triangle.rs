@@ -15,8 +15,6 @@ use crate::num::{Coord, I16F16, I32F32};
 /// let _ = Triangle::<3, 9>::from_ints([[0; 3]; 9]);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "defmt", defmt(bound = "C: crate::num::Coord"))]
 pub struct Triangle<const N: usize, const LEN: usize, C = I16F16> {
     pub(super) points: [Point3<C>; LEN],
 }

@@ -65,8 +65,8 @@ pub(crate) fn triangle_basis(n: usize, at: Barycentric) -> [Basis; 3] {
     };
     let by = |u: usize, v: usize| {
         let factors = triangle_indices(n).map(|(i, j, k)| {
-            let before = (i >= u && j >= v).then(|| term(n - 1, (i - u, j - v, k))).unwrap_or_default();
-            let after = (k > 0).then(|| term(n - 1, (i, j, k - 1))).unwrap_or_default();
+            let before = if i >= u && j >= v { term(n - 1, (i - u, j - v, k)) } else { BigInt::default() };
+            let after = if k > 0 { term(n - 1, (i, j, k - 1)) } else { BigInt::default() };
             (before - after) * n
         });
         Basis { factors: factors.collect(), divisor: divisor(at.denominator(), n - 1) }
