@@ -1,7 +1,7 @@
 //! The bit budget: which accumulator is wide enough, by proof.
 
+use super::bounds::{largest_weight, longest_step, weight_shift};
 use super::form::{Form, Kind};
-use super::steps::ceil_div;
 use crate::num::Wide;
 
 /// The largest step count in one direction.
@@ -32,15 +32,19 @@ impl core::fmt::Display for Accumulator {
 /// What the engine needs for a net at its step counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub struct Budget {
     /// The accumulator taken: the narrowest w with (2K+1)·N < 2^w.
     pub accumulator: Accumulator,
-    /// N = n_r^m n_s^h 2^F: the denominator of every exact coordinate.
+    /// N = n_r^m n_s^h 2^F: the denominator of every exact coordinate; times the largest weight for a rational net
+    /// (as an integer, common trailing zeros dropped), a bound on the denominators.
     pub scale: u128,
     /// F: the fraction bits that the net really uses.
     pub fraction_bits: u32,
     /// K ≥ 1: no coordinate moves by more units from a point to the next in a row or column.
     pub largest_step: u32,
+    /// The trailing zero bits that all weights share.
+    pub(crate) weight_shift: u32,
 }
 
 /// Why a lattice cannot be generated.
@@ -94,23 +98,17 @@ impl core::fmt::Display for LatticeError {
 
 impl core::error::Error for LatticeError {}
 
-/// The largest step in whole units, and the trailing zero bits that all coordinates share.
-fn measure(form: &Form<'_>) -> (u32, u32) {
+/// The trailing zero bits that all coordinates share, at most 16.
+fn unused_bits(form: &Form<'_>) -> u32 {
     let used = form.points().iter().fold(0, |bits, p| bits | p.x.to_bits() | p.y.to_bits() | p.z.to_bits());
-    let drop = used.trailing_zeros().min(16);
-    let mut largest = 1;
-    for [by_r, by_s] in form.largest_differences() {
-        let by_r = ceil_div(form.degrees.0 as u64 * by_r, u64::from(form.steps.0) << 16);
-        let by_s = ceil_div(form.degrees.1 as u64 * by_s, u64::from(form.steps.1.max(1)) << 16);
-        largest = largest.max(by_r).max(by_s);
-    }
-    (largest as u32, drop)
+    used.trailing_zeros().min(16)
 }
 
 /// The factors of N: a step count and its exponent, twice.
 fn factors(form: &Form<'_>) -> [(u32, usize); 2] {
-    let second = if form.kind == Kind::Tensor { (form.steps.1, form.degrees.1) } else { (1, 0) };
-    [(form.steps.0, form.degrees.0), second]
+    let (r, s) = form.table_steps();
+    let second = if form.kind == Kind::Tensor { (s, form.degrees.1) } else { (1, 0) };
+    [(r, form.degrees.0), second]
 }
 
 impl Budget {
@@ -126,10 +124,10 @@ impl Budget {
         if !fits {
             return Err(LatticeError::Steps { r, s });
         }
-        let (largest_step, drop) = measure(form);
-        let fraction_bits = 16 - drop;
+        let (largest_step, fraction_bits) = (longest_step(form), 16 - unused_bits(form));
+        let largest_weight = largest_weight(form);
         let range = 2 * u128::from(largest_step) + 1;
-        let scale = factors(form).into_iter().try_fold(1_u128 << fraction_bits, |n, (steps, exponent)| {
+        let scale = factors(form).into_iter().try_fold(largest_weight << fraction_bits, |n, (steps, exponent)| {
             n.checked_mul(u128::from(steps).checked_pow(exponent as u32)?)
         });
         let accumulator = scale.and_then(|n| n.checked_mul(range)).map(|values| match 128 - values.leading_zeros() {
@@ -138,9 +136,11 @@ impl Budget {
             _ => Accumulator::I128,
         });
         match (scale, accumulator) {
-            (Some(scale), Some(accumulator)) => Ok(Self { accumulator, scale, fraction_bits, largest_step }),
+            (Some(scale), Some(accumulator)) => {
+                Ok(Self { accumulator, scale, fraction_bits, largest_step, weight_shift: weight_shift(form) })
+            }
             _ => {
-                let one = Wide::from_i64(1 << fraction_bits).mul_i32(2 * largest_step as i32 + 1);
+                let one = Wide::from_i64((largest_weight << fraction_bits) as i64).mul_i32(2 * largest_step as i32 + 1);
                 let values = factors(form).into_iter().fold(one, |product, (steps, exponent)| {
                     core::iter::repeat_n(steps as i32, exponent).fold(product, |p, n| p.mul_i32(n))
                 });

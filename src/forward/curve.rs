@@ -4,7 +4,7 @@ use super::engine::{Engine, walk};
 use super::form::Form;
 use super::lattice::LatticePoint;
 use super::{Budget, LatticeError};
-use crate::patch::CurveNet;
+use crate::patch::{CurveNet, RationalCurveNet};
 
 /// A point of a curve's lattice: the index and exactly rounded coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -78,6 +78,15 @@ impl<'a> CurveLattice<'a> {
     /// bits.
     pub fn new(net: CurveNet<'a>, n: u32) -> Result<Self, LatticeError> {
         let form = Form::curve(net, n);
+        Ok(Self { form, budget: Budget::of(&form)? })
+    }
+
+    /// Plans the lattice of a rational curve, by the incremental quotient.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new), with N times the largest weight.
+    pub fn rational(net: RationalCurveNet<'a>, n: u32) -> Result<Self, LatticeError> {
+        let form = Form::rational_curve(net, n);
         Ok(Self { form, budget: Budget::of(&form)? })
     }
 

@@ -1,9 +1,11 @@
 //! Which walker serves a plan: the only place that knows the choice of kernel and room.
 
 use super::form::Form;
-use super::kernel::{Accumulate, Kernel, Mask, Residual};
+use super::kernel::{Accumulate, Mask, Residual};
 use super::lattice::LatticePoint;
-use super::walk::{At, Visit, Walker};
+use super::quotient::QuotientWalker;
+use super::visit::{Site, Visit};
+use super::walk::Walker;
 use super::{Accumulator, Budget};
 
 /// One walker per kernel and room. Order 4 holds cubics, 6 quintics, 9 everything.
@@ -20,6 +22,8 @@ pub(super) enum Engine {
     Residual64Quintic(Walker<Residual<i64>, 6>),
     Residual64Full(Walker<Residual<i64>, 9>),
     Residual128(Walker<Residual<i128>, 9>),
+    Quotient64(QuotientWalker<i64, 4>),
+    Quotient128(QuotientWalker<i128, 9>),
 }
 
 /// Runs `$body` with `$walker` bound to the walker that suits the plan: one place that knows the choice.
@@ -34,9 +38,21 @@ macro_rules! with_walker {
                 $body
             }};
         }
+        macro_rules! run_quotient {
+            ($name:ident, $word:ty, $room:literal) => {{
+                let $walker = QuotientWalker::<$word, $room>::new(form, budget);
+                #[allow(unused_imports)]
+                use Engine::$name as $variant;
+                $body
+            }};
+        }
         let degree = form.degree();
         let integer_bits = integer_bits(form);
         match budget.accumulator {
+            Accumulator::I32 | Accumulator::I64 if form.weights().is_some() && degree < 4 => {
+                run_quotient!(Quotient64, i64, 4)
+            }
+            _ if form.weights().is_some() => run_quotient!(Quotient128, i128, 9),
             Accumulator::I32 if degree < 4 => {
                 if let Some(kernel) = Accumulate::<i32>::of(budget, integer_bits) {
                     run!(Accumulate32, 4, kernel)
@@ -82,6 +98,8 @@ macro_rules! each_engine {
             Engine::Residual64Quintic($walker) => $body,
             Engine::Residual64Full($walker) => $body,
             Engine::Residual128($walker) => $body,
+            Engine::Quotient64($walker) => $body,
+            Engine::Quotient128($walker) => $body,
         }
     };
 }
@@ -103,10 +121,10 @@ struct Fold<B, F> {
 
 impl<B, F: FnMut(B, LatticePoint) -> B> Visit for Fold<B, F> {
     #[inline(always)]
-    fn point<K: Kernel, const R: usize>(self, at: &At<'_, K, R>) -> Self {
+    fn point<S: Site>(self, at: &S) -> Self {
         let Self { state, mut f } = self;
-        let [x, y, z] = at.point;
-        let state = f(state, LatticePoint { i: at.i, j: at.j, x, y, z });
+        let [x, y, z] = at.point();
+        let state = f(state, LatticePoint { i: at.i(), j: at.j(), x, y, z });
         Self { state, f }
     }
 }

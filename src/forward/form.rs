@@ -1,8 +1,8 @@
 //! What the engine walks over: a net of any kind, seen from its corner (0, 0).
 
 use crate::geometry::Point3;
-use crate::num::Coord;
-use crate::patch::{CurveNet, SurfaceNet, triangle_index};
+use crate::num::{Coord, I16F16};
+use crate::patch::{CurveNet, RationalCurveNet, SurfaceNet, triangle_index};
 
 /// The three kinds of nets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,24 +18,40 @@ pub(crate) struct Form<'a> {
     pub(crate) kind: Kind,
     pub(crate) degrees: (usize, usize),
     pub(crate) steps: (u32, u32),
+    /// The lattice of cell centres, ((i + 1/2)/n_r, (j + 1/2)/n_s), instead of (i/n_r, j/n_s).
+    pub(crate) centred: bool,
     points: &'a [Point3],
+    weights: Option<&'a [I16F16]>,
 }
 
 impl<'a> Form<'a> {
     pub(crate) fn curve(net: CurveNet<'a>, steps: u32) -> Self {
-        Self { kind: Kind::Curve, degrees: (net.degree(), 0), steps: (steps, 0), points: net.points() }
+        let (kind, degrees) = (Kind::Curve, (net.degree(), 0));
+        Self { kind, degrees, steps: (steps, 0), centred: false, points: net.points(), weights: None }
+    }
+
+    pub(crate) fn rational_curve(net: RationalCurveNet<'a>, steps: u32) -> Self {
+        Self { weights: Some(net.weights()), ..Self::curve(net.control_net(), steps) }
     }
 
     pub(crate) fn surface(net: SurfaceNet<'a>, steps: (u32, u32)) -> Self {
-        let kind = match net {
-            SurfaceNet::Triangle(_) => Kind::Triangle,
-            SurfaceNet::Tensor(_) => Kind::Tensor,
-        };
-        Self { kind, degrees: net.degrees(), steps, points: net.points() }
+        let kind = if net.is_triangle() { Kind::Triangle } else { Kind::Tensor };
+        let (points, weights) = (net.points(), net.weights());
+        Self { kind, degrees: net.degrees(), steps, centred: false, points, weights }
+    }
+
+    /// The centres of the cells of this lattice; for a triangle those of its parallelograms, the halves along the
+    /// third side included.
+    pub(crate) fn centres(&self) -> Self {
+        Self { centred: true, ..*self }
     }
 
     pub(crate) fn points(&self) -> &'a [Point3] {
         self.points
+    }
+
+    pub(crate) fn weights(&self) -> Option<&'a [I16F16]> {
+        self.weights
     }
 
     /// The larger degree.
@@ -53,53 +69,66 @@ impl<'a> Form<'a> {
         if self.kind == Kind::Triangle { self.degrees.0 - b } else { self.degrees.0 }
     }
 
-    /// Raw bits of coordinate `axis` of control point (a, b): b\[a, b, n−a−b\] of a triangle.
-    pub(crate) fn bits(&self, axis: usize, a: usize, b: usize) -> i64 {
-        let index = match self.kind {
+    /// Where control point (a, b) stands: b\[a, b, n−a−b\] of a triangle.
+    fn index(&self, a: usize, b: usize) -> usize {
+        match self.kind {
             Kind::Curve => a,
             Kind::Tensor => a * (self.degrees.1 + 1) + b,
             Kind::Triangle => triangle_index(b, self.degrees.0 - a - b),
-        };
+        }
+    }
+
+    /// Raw bits of coordinate `axis` of control point (a, b).
+    pub(crate) fn bits(&self, axis: usize, a: usize, b: usize) -> i64 {
         // The net was counted when it was made; the fallback is never taken.
-        self.points.get(index).map_or(0, |p| match axis {
+        self.points.get(self.index(a, b)).map_or(0, |p| match axis {
             0 => p.x.bits(),
             1 => p.y.bits(),
             _ => p.z.bits(),
         })
     }
 
+    /// Raw bits of the weight of control point (a, b); 1 for a polynomial.
+    pub(crate) fn weight_bits(&self, a: usize, b: usize) -> i64 {
+        self.weights.map_or(1, |weights| weights.get(self.index(a, b)).map_or(1, |w| w.bits()))
+    }
+
+    /// The steps that difference tables take: half steps to reach cell centres.
+    pub(crate) fn table_steps(&self) -> (u32, u32) {
+        if self.centred { (2 * self.steps.0, 2 * self.steps.1) } else { self.steps }
+    }
+
     /// The last i of row `j`.
     pub(crate) fn last_in_row(&self, j: u32) -> u32 {
-        if self.kind == Kind::Triangle { self.steps.0 - j } else { self.steps.0 }
+        let last = if self.kind == Kind::Triangle { self.steps.0 - j } else { self.steps.0 };
+        last - u32::from(self.centred)
     }
 
     /// The last row.
     pub(crate) fn last_row(&self) -> u32 {
-        self.steps.1
+        self.steps.1 - u32::from(self.centred)
     }
 
     /// The number of lattice points.
     pub(crate) fn point_count(&self) -> u64 {
-        let (r, s) = (u64::from(self.steps.0), u64::from(self.steps.1));
+        let (r, s) = (u64::from(self.last_in_row(0)), u64::from(self.last_row()));
         if self.kind == Kind::Triangle { (r + 1) * (r + 2) / 2 } else { (r + 1) * (s + 1) }
     }
 
-    /// The largest |difference| of neighbours along each direction, per axis, in raw bits; [r, s] for each axis.
-    pub(crate) fn largest_differences(&self) -> [[u64; 2]; 3] {
-        let mut largest = [[0; 2]; 3];
-        for (axis, [by_r, by_s]) in largest.iter_mut().enumerate() {
-            for a in 0..=self.degrees.0 {
-                for b in 0..=self.last_column_entry(a) {
-                    let here = self.bits(axis, a, b);
-                    if a < self.degrees.0 && b <= self.last_column_entry(a + 1) {
-                        *by_r = (*by_r).max(self.bits(axis, a + 1, b).abs_diff(here));
-                    }
-                    if b < self.last_column_entry(a) {
-                        *by_s = (*by_s).max(self.bits(axis, a, b + 1).abs_diff(here));
-                    }
+    /// The largest |difference| of neighbours along r and along s of the net values `value(a, b)`.
+    pub(crate) fn largest_differences(&self, value: impl Fn(usize, usize) -> i128) -> [u128; 2] {
+        let [mut by_r, mut by_s] = [0; 2];
+        for a in 0..=self.degrees.0 {
+            for b in 0..=self.last_column_entry(a) {
+                let here = value(a, b);
+                if a < self.degrees.0 && b <= self.last_column_entry(a + 1) {
+                    by_r = value(a + 1, b).abs_diff(here).max(by_r);
+                }
+                if b < self.last_column_entry(a) {
+                    by_s = value(a, b + 1).abs_diff(here).max(by_s);
                 }
             }
         }
-        largest
+        [by_r, by_s]
     }
 }

@@ -103,11 +103,6 @@ impl<W: Word> Residual<W> {
         Self { scale, half: scale >> 1, ladder: budget.largest_step.checked_ilog2().unwrap_or(0) }
     }
 
-    /// N as an unsigned number.
-    pub(crate) fn scale(&self) -> W {
-        self.scale
-    }
-
     /// Brings v = e + d, which left 0 ..= N − 1, back into it; returns the change of x.
     ///
     /// v lies in (−K·N, (K+1)·N), so v − ⌊N/2⌋ has its true sign in w bits. Multiples N·2^b with 2^b ≤ K stay below

@@ -78,6 +78,16 @@ impl<'a> Lattice<'a> {
         Ok(Self { form, budget: Budget::of(&form)? })
     }
 
+    /// Plans the lattice of the cells' centres, ((i + 1/2)/n_r, (j + 1/2)/n_s): i < n_r and j < n_s, or i + j < n for
+    /// a triangle, whose outermost centres lie on its third side. See [`Sampling`](super::Sampling).
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new); the scale is that of twice as many steps.
+    pub fn centres(net: SurfaceNet<'a>, steps: Steps) -> Result<Self, LatticeError> {
+        let form = Form::surface(net, (steps.r(), steps.s())).centres();
+        Ok(Self { form, budget: Budget::of(&form)? })
+    }
+
     /// The step counts.
     #[must_use]
     pub fn steps(&self) -> (u32, u32) {

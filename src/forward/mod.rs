@@ -28,23 +28,29 @@
 //! The narrowest of `i32`, `i64`, `i128` with (2K+1)·N < 2^w is taken; what fits none is a
 //! [`LatticeError::Budget`].
 
+mod bounds;
 mod budget;
 mod curve;
 mod engine;
 mod form;
 mod kernel;
 mod lattice;
+mod quotient;
 mod steps;
+mod table;
 mod tangent;
+mod visit;
 mod walk;
 
 pub use budget::{Accumulator, Budget, LatticeError};
 pub use curve::{CurveLattice, CurvePoint, CurvePoints, UnitStep, UnitSteps};
 pub use lattice::{Lattice, LatticePoint, LatticePoints, RowStep, RowSteps};
-pub use steps::Steps;
+pub use steps::{Sampling, Steps};
 
 pub(crate) use budget::MAX_STEPS;
 pub(crate) use form::Form;
 pub(crate) use kernel::{Kernel, Residual};
+pub(crate) use quotient::QuotientWalker;
 pub(crate) use tangent::tangent_bits;
-pub(crate) use walk::{At, Visit, Walker};
+pub(crate) use visit::{Fraction, Site, Visit};
+pub(crate) use walk::Walker;

@@ -1,8 +1,9 @@
-//! Step counts: the paper's bound and the hole-free count.
+//! Step counts: the paper's bound, the hole-free count, and the cheapest sampling.
 
+use super::bounds::{Axis, ceil_div, unit};
 use super::form::Form;
 use super::{LatticeError, MAX_STEPS};
-use crate::patch::{CurveNet, SurfaceNet, TensorNet, TriangleNet};
+use crate::patch::{CurveNet, RationalCurveNet, SurfaceNet};
 
 /// How many steps a lattice takes in the two parameter directions; equal for triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -12,9 +13,14 @@ pub struct Steps {
     s: u32,
 }
 
-/// `ceil(a / b)`, b > 0.
-pub(super) fn ceil_div(a: u64, b: u64) -> u64 {
-    core::num::NonZeroU64::new(b).map_or(0, |b| a.div_ceil(b.get()))
+/// How a surface is sampled without holes: a lattice, and the centres of its cells where that takes fewer points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Sampling {
+    /// The step counts of the lattice.
+    pub steps: Steps,
+    /// Whether the cells' centres are sampled too (the quincunx).
+    pub centres: bool,
 }
 
 impl Steps {
@@ -49,33 +55,37 @@ impl Steps {
         self.s
     }
 
-    /// Counts that come from a net: at least 1, and legal because 8 · 2 · 32767 < 2^24.
+    /// Counts that come from a net, at least 1. Those of a polynomial are legal because 8 · 2 · 32767 < 2^24; those
+    /// of a rational net with extreme weights are capped at 2^24, which no accumulator takes at such weights.
     fn of_net(r: u128, s: u128) -> Self {
         let clamp = |n: u128| n.clamp(1, MAX_STEPS.into()) as u32;
         Self { r: clamp(r), s: clamp(s) }
     }
 
-    /// The paper's count (section 3): the smallest integer not below m·max|ΔP| over both directions and all of x, y
-    /// and z, the same in both directions.
+    /// The paper's count (section 3): the smallest integer not below the bound on |∂/∂r| and |∂/∂s| over all of x, y
+    /// and z, the same in both directions. The bound is m·max|ΔP|, the centred one for rational patches.
     ///
     /// No step is longer than one unit, which is what a plotter needs. On a screen it is not enough: rows are
     /// 8-connected, but cells may leave diamond holes between them; see [`hole_free`](Self::hole_free).
     #[must_use]
     pub fn paper(net: SurfaceNet<'_>) -> Self {
         let form = Form::surface(net, (1, 1));
-        let (m, h) = (form.degrees.0 as u64, form.degrees.1 as u64);
-        let longest = form.largest_differences().into_iter().map(|[r, s]| (m * r).max(h * s)).max().unwrap_or(0);
-        let n = ceil_div(longest, 1 << 16).into();
+        let longest = (0..3).flat_map(|axis| Axis::new(&form, axis).slopes()).max().unwrap_or(0);
+        let n = ceil_div(longest, unit(&form));
         Self::of_net(n, n)
     }
 
-    /// The paper's count for a curve: the smallest integer not below m·max|ΔP|, so that no step is longer than one
-    /// unit along any axis.
+    /// The paper's count for a curve: the smallest integer not below the bound m·max|ΔP|, so that no step is longer
+    /// than one unit along any axis.
     #[must_use]
     pub fn curve(net: CurveNet<'_>) -> u32 {
-        let form = Form::curve(net, 1);
-        let longest = form.largest_differences().into_iter().map(|[r, _]| r).max().unwrap_or(0);
-        Self::of_net(ceil_div(form.degrees.0 as u64 * longest, 1 << 16).into(), 1).r
+        curve_count(&Form::curve(net, 1))
+    }
+
+    /// The same for a rational curve, by the centred bound.
+    #[must_use]
+    pub fn rational_curve(net: RationalCurveNet<'_>) -> u32 {
+        curve_count(&Form::rational_curve(net, 1))
     }
 
     /// The count that leaves no hole on the x, y grid: every pixel centre in the lattice's piecewise-linear
@@ -88,6 +98,7 @@ impl Steps {
     /// * Tensor: with A = max|S_r|, B = max|S_s| from the net and K = max(min over the sign of max|S_r·B ∓ S_s·A|,
     ///   A·B), n_r = floor(K/B) + 1 and n_s = floor(K/A) + 1. S_r and S_s enter K as Bernstein coefficients of the
     ///   common degree (m, h); the sign is the choice of the cell's diagonal.
+    /// * Rational: the same with centred bounds in the place of m·max|ΔP|.
     ///
     /// ```
     /// use embedded_surfaces::{forward::Steps, patch::{BilinearPatch, Surface}};
@@ -99,58 +110,68 @@ impl Steps {
     /// ```
     #[must_use]
     pub fn hole_free(net: SurfaceNet<'_>) -> Self {
-        match net {
-            SurfaceNet::Triangle(t) => triangle_count(t),
-            SurfaceNet::Tensor(t) => tensor_counts(t),
-        }
+        let form = Form::surface(net, (1, 1));
+        if net.is_triangle() { triangle_count(&form) } else { tensor_counts(&form) }
     }
 }
 
-fn triangle_count(net: TriangleNet<'_>) -> Steps {
-    let form = Form::surface(SurfaceNet::Triangle(net), (1, 1));
-    let n = form.degrees.0;
-    let mut longest = 0;
-    for (axis, by_direction) in form.largest_differences().into_iter().enumerate().take(2) {
-        longest = longest.max(by_direction[0]).max(by_direction[1]);
-        // The third family: b[a+1,b,c] - b[a,b+1,c].
-        for a in 0..n {
-            for b in 0..n - a {
-                longest = longest.max(form.bits(axis, a + 1, b).abs_diff(form.bits(axis, a, b + 1)));
-            }
-        }
+impl Sampling {
+    /// The lattice of [`Steps::hole_free`], or a coarser one with its cells' centres, whichever has fewer points.
+    ///
+    /// With |S_r|/n_r < 1 and |S_s|/n_s < 1 alone, a cell may be too long along both diagonals. The surface point at
+    /// its centre makes it hole-free: it differs from each corner by at most half a step in r and half a step in s,
+    /// so less than one unit. That is 2AB points instead of up to 4AB, where cells lie at 45° on the screen.
+    ///
+    /// ```
+    /// use embedded_surfaces::{forward::Sampling, patch::{BilinearPatch, Surface}};
+    /// let turned = BilinearPatch::from_ints([[[0, 0, 0], [-50, 50, 0]], [[50, 50, 0], [0, 100, 0]]])?;
+    /// let sampling = Sampling::cheapest(turned.surface());
+    /// assert_eq!((sampling.steps.r(), sampling.centres), (51, true));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn cheapest(net: SurfaceNet<'_>) -> Self {
+        let plain = Steps::hole_free(net);
+        let form = Form::surface(net, (1, 1));
+        let [a, b] = screen_slopes(&form);
+        let count = |slope: u128| slope.checked_div(unit(&form)).unwrap_or(0) + 1;
+        let (r, s) = (count(a), count(b));
+        let coarse = if net.is_triangle() { Steps::of_net(r.max(s), r.max(s)) } else { Steps::of_net(r, s) };
+        let points = |steps: Steps| Form::surface(net, (steps.r, steps.s)).point_count();
+        let both = points(coarse) + Form::surface(net, (coarse.r, coarse.s)).centres().point_count();
+        if both < points(plain) { Self { steps: coarse, centres: true } } else { Self { steps: plain, centres: false } }
     }
-    let count = u128::from((n as u64 * longest) >> 16) + 1;
+}
+
+fn curve_count(form: &Form<'_>) -> u32 {
+    let longest = (0..3).map(|axis| Axis::new(form, axis).slopes()[0]).max().unwrap_or(0);
+    Steps::of_net(ceil_div(longest, unit(form)), 1).r
+}
+
+/// A and B: the larger of the x and y bounds along each direction.
+fn screen_slopes(form: &Form<'_>) -> [u128; 2] {
+    let [x, y] = [0, 1].map(|axis| Axis::new(form, axis).slopes());
+    [x[0].max(y[0]), x[1].max(y[1])]
+}
+
+fn triangle_count(form: &Form<'_>) -> Steps {
+    let third = [0, 1].map(|axis| Axis::new(form, axis).third_slope());
+    let longest = screen_slopes(form).into_iter().chain(third).max().unwrap_or(0);
+    let count = longest.checked_div(unit(form)).unwrap_or(0) + 1;
     Steps::of_net(count, count)
 }
 
-fn tensor_counts(net: TensorNet<'_>) -> Steps {
-    let form = Form::surface(SurfaceNet::Tensor(net), (1, 1));
-    let (m, h) = (form.degrees.0 as i128, form.degrees.1 as i128);
-    let [x, y, _] = form.largest_differences();
-    // A and B in 2^-16; one unit of the last place instead of 0.
-    let a = (m * i128::from(x[0].max(y[0]))).max(1);
-    let b = (h * i128::from(x[1].max(y[1]))).max(1);
-    // m·h·K from the elevated coefficients, the smaller of the two diagonals.
-    let (mut minus, mut plus) = (0, 0);
-    for axis in 0..2 {
-        for i in 0..=form.degrees.0 {
-            for j in 0..=form.degrees.1 {
-                let along_r = m * elevated(i, form.degrees.0, |a| form.bits(axis, a + 1, j) - form.bits(axis, a, j));
-                let along_s = h * elevated(j, form.degrees.1, |b| form.bits(axis, i, b + 1) - form.bits(axis, i, b));
-                let (by_r, by_s) = (h * along_r * b, m * along_s * a);
-                minus = minus.max((by_r - by_s).abs());
-                plus = plus.max((by_r + by_s).abs());
-            }
-        }
-    }
-    let k = minus.min(plus).max(m * h * a * b);
-    let count = |other: i128| k.checked_div((m * h * other) << 16).unwrap_or(0) as u128 + 1;
-    Steps::of_net(count(b), count(a))
-}
-
-/// m times coefficient `i` of a degree m − 1 polynomial elevated to degree m: i·e_(i−1) + (m − i)·e_i.
-fn elevated(i: usize, m: usize, e: impl Fn(usize) -> i64) -> i128 {
-    let before = if i > 0 { i as i128 * i128::from(e(i - 1)) } else { 0 };
-    let after = if i < m { (m - i) as i128 * i128::from(e(i)) } else { 0 };
-    before + after
+fn tensor_counts(form: &Form<'_>) -> Steps {
+    let unit = unit(form);
+    // One unit of the coordinates' last place instead of 0.
+    let [a, b] = screen_slopes(form).map(|slope| slope.max(unit >> 16));
+    let counts = || {
+        let (along_r, along_s) = (i128::try_from(a).ok()?, i128::try_from(b).ok()?);
+        let x = Axis::new(form, 0).diagonals(along_r, along_s)?;
+        let y = Axis::new(form, 1).diagonals(along_r, along_s)?;
+        let k = x[0].max(y[0]).min(x[1].max(y[1])).max(a.checked_mul(b)?);
+        let count = |other: u128| Some(k.checked_div(unit.checked_mul(other)?)? + 1);
+        Some(Steps::of_net(count(b)?, count(a)?))
+    };
+    counts().unwrap_or(Steps { r: MAX_STEPS, s: MAX_STEPS })
 }

@@ -50,7 +50,10 @@ impl Weights {
 }
 
 /// The bits, sign included, that hold every component of both tangents: |L·N/n·S'| ≤ L·K·N.
+///
+/// For a rational net T' = −D·S' + (x − S)·D' with |D'|/n ≤ m·D_max, so L·(K + m)·D_max.
 pub(crate) fn tangent_bits(form: &Form<'_>, budget: &Budget) -> u32 {
-    let factor = lcm(form.degree()) as u128 * u128::from(budget.largest_step);
+    let weights = if form.weights().is_some() { form.degree() as u128 } else { 0 };
+    let factor = lcm(form.degree()) as u128 * (u128::from(budget.largest_step) + weights);
     budget.scale.checked_mul(factor).map_or(129, |largest| 129 - largest.leading_zeros())
 }

@@ -5,8 +5,8 @@
 //! 2^640 (see `num::wide`).
 
 use super::{
-    Barycentric, CurveNet, MAX_DEGREE, NetError, Parameter, RationalCurve, RationalTensor, RationalTriangle, TensorNet,
-    TriangleNet, triangle_index, triangle_len,
+    Barycentric, CurveNet, MAX_DEGREE, NetError, Parameter, RationalCurveNet, RationalTensorNet, RationalTriangleNet,
+    TensorNet, TriangleNet, triangle_index, triangle_len,
 };
 use crate::geometry::{Point3, Vector3};
 use crate::num::{Coord, I16F16, I32F32, Wide};
@@ -310,53 +310,54 @@ impl<C: Coord> TensorNet<'_, C> {
     }
 }
 
-impl<const K: usize, C: Coord> RationalCurve<K, C> {
+impl<C: Coord> RationalCurveNet<'_, C> {
     fn source(&self) -> CurveSource<'_, C> {
-        CurveSource(Source { points: self.net().points(), weights: Some(self.weights()) })
+        CurveSource(Source { points: self.points(), weights: Some(self.weights()) })
     }
 
     /// The point at `t`, correctly rounded, half up.
     #[must_use]
     pub fn eval(&self, t: Parameter) -> Point3<C> {
-        let source = self.source();
-        let value = |axis| source.collapse(axis, repeat(t, K - 1));
+        let (source, m) = (self.source(), self.control_net().degree());
+        let value = |axis| source.collapse(axis, repeat(t, m));
         rounded_point(value, &value(3))
     }
 
     /// The derivative at `t`, rounded to 2^-32; `None` where it does not fit an `I32F32`.
     #[must_use]
     pub fn derivative(&self, t: Parameter) -> Option<Vector3> {
-        let source = self.source();
+        let (source, m) = (self.source(), self.control_net().degree());
         rational_derivative::<C>(
-            (K - 1, t.denominator()),
-            |axis| source.collapse(axis, repeat(t, K - 1)),
-            |axis| source.collapse(axis, slope(t, K - 2)),
+            (m, t.denominator()),
+            |axis| source.collapse(axis, repeat(t, m)),
+            |axis| source.collapse(axis, slope(t, m - 1)),
         )
     }
 }
 
-impl<const N: usize, const LEN: usize, C: Coord> RationalTriangle<N, LEN, C> {
+impl<C: Coord> RationalTriangleNet<'_, C> {
     fn source(&self) -> TriangleSource<'_, C> {
-        TriangleSource(Source { points: self.net().points(), weights: Some(self.weights()) }, N)
+        let source = Source { points: self.points(), weights: Some(self.weights()) };
+        TriangleSource(source, self.control_net().degree())
     }
 
     /// The point at (u, v, w), correctly rounded, half up.
     #[must_use]
     pub fn eval(&self, at: Barycentric) -> Point3<C> {
-        let source = self.source();
-        let value = |axis| source.collapse(axis, core::iter::repeat_n(TriangleStep::at(at), N));
+        let (source, n) = (self.source(), self.control_net().degree());
+        let value = |axis| source.collapse(axis, core::iter::repeat_n(TriangleStep::at(at), n));
         rounded_point(value, &value(3))
     }
 
     /// The partial derivatives by u and by v, rounded to 2^-32; `None` where one does not fit an `I32F32`.
     #[must_use]
     pub fn partials(&self, at: Barycentric) -> Option<[Vector3; 2]> {
-        let source = self.source();
+        let (source, n) = (self.source(), self.control_net().degree());
         let by = |along| {
-            let steps = core::iter::once(along).chain(core::iter::repeat_n(TriangleStep::at(at), N - 1));
+            let steps = core::iter::once(along).chain(core::iter::repeat_n(TriangleStep::at(at), n - 1));
             rational_derivative::<C>(
-                (N, at.denominator()),
-                |axis| source.collapse(axis, core::iter::repeat_n(TriangleStep::at(at), N)),
+                (n, at.denominator()),
+                |axis| source.collapse(axis, core::iter::repeat_n(TriangleStep::at(at), n)),
                 |axis| source.collapse(axis, steps.clone()),
             )
         };
@@ -364,31 +365,31 @@ impl<const N: usize, const LEN: usize, C: Coord> RationalTriangle<N, LEN, C> {
     }
 }
 
-impl<const M: usize, const H: usize, C: Coord> RationalTensor<M, H, C> {
+impl<C: Coord> RationalTensorNet<'_, C> {
     fn source(&self) -> TensorSource<'_, C> {
-        let weights = Some(self.weights().as_flattened());
-        TensorSource(Source { points: self.net().points(), weights }, (M - 1, H - 1))
+        let source = Source { points: self.points(), weights: Some(self.weights()) };
+        TensorSource(source, self.control_net().degrees())
     }
 
     /// The point at (r, s), correctly rounded, half up.
     #[must_use]
     pub fn eval(&self, r: Parameter, s: Parameter) -> Point3<C> {
-        let source = self.source();
-        let value = |axis| source.collapse(axis, (repeat(r, M - 1), repeat(s, H - 1)));
+        let (source, (m, h)) = (self.source(), self.control_net().degrees());
+        let value = |axis| source.collapse(axis, (repeat(r, m), repeat(s, h)));
         rounded_point(value, &value(3))
     }
 
     /// The partial derivatives by r and by s, rounded to 2^-32; `None` where one does not fit an `I32F32`.
     #[must_use]
     pub fn partials(&self, r: Parameter, s: Parameter) -> Option<[Vector3; 2]> {
-        let source = self.source();
-        let value = |axis| source.collapse(axis, (repeat(r, M - 1), repeat(s, H - 1)));
+        let (source, (m, h)) = (self.source(), self.control_net().degrees());
+        let value = |axis| source.collapse(axis, (repeat(r, m), repeat(s, h)));
         Some([
-            rational_derivative::<C>((M - 1, r.denominator()), value, |axis| {
-                source.collapse(axis, (slope(r, M - 2), repeat(s, H - 1)))
+            rational_derivative::<C>((m, r.denominator()), value, |axis| {
+                source.collapse(axis, (slope(r, m - 1), repeat(s, h)))
             })?,
-            rational_derivative::<C>((H - 1, s.denominator()), value, |axis| {
-                source.collapse(axis, (repeat(r, M - 1), slope(s, H - 2)))
+            rational_derivative::<C>((h, s.denominator()), value, |axis| {
+                source.collapse(axis, (repeat(r, m), slope(s, h - 1)))
             })?,
         ])
     }

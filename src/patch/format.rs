@@ -1,8 +1,8 @@
 //! `defmt::Format` of the nets: derives would ask it of `fixed`'s types, which have it from 1.30 on only.
 
 use super::{
-    Curve, CurveNet, RationalCurve, RationalTensor, RationalTriangle, SurfaceNet, Tensor, TensorNet, Triangle,
-    TriangleNet,
+    Curve, CurveNet, RationalCurve, RationalCurveNet, RationalTensor, RationalTensorNet, RationalTriangle,
+    RationalTriangleNet, SurfaceNet, Tensor, TensorNet, Triangle, TriangleNet,
 };
 use crate::num::Coord;
 use defmt::{Format, Formatter};
@@ -48,25 +48,32 @@ impl<C: Coord> Format for SurfaceNet<'_, C> {
         match self {
             Self::Triangle(net) => net.format(f),
             Self::Tensor(net) => net.format(f),
+            Self::RationalTriangle(net) => net.format(f),
+            Self::RationalTensor(net) => net.format(f),
         }
     }
 }
 
-impl<const K: usize, C: Coord> Format for RationalCurve<K, C> {
-    fn format(&self, f: Formatter<'_>) {
-        defmt::write!(f, "rational {}, weights {}/2^16", self.net(), self.weights().map(|w| w.to_bits()));
-    }
+/// Rational views and the nets that own them.
+macro_rules! rational {
+    ($view:ident, $net:ident, $($parameter:ident),*) => {
+        impl<C: Coord> Format for $view<'_, C> {
+            fn format(&self, f: Formatter<'_>) {
+                defmt::write!(f, "rational {}, weights in 2^-16: ", self.control_net());
+                for weight in self.weights() {
+                    defmt::write!(f, "{} ", weight.to_bits());
+                }
+            }
+        }
+
+        impl<$(const $parameter: usize,)* C: Coord> Format for $net<$($parameter,)* C> {
+            fn format(&self, f: Formatter<'_>) {
+                self.net().format(f);
+            }
+        }
+    };
 }
 
-impl<const N: usize, const LEN: usize, C: Coord> Format for RationalTriangle<N, LEN, C> {
-    fn format(&self, f: Formatter<'_>) {
-        defmt::write!(f, "rational {}, weights {}/2^16", self.net(), self.weights().map(|w| w.to_bits()));
-    }
-}
-
-impl<const M: usize, const H: usize, C: Coord> Format for RationalTensor<M, H, C> {
-    fn format(&self, f: Formatter<'_>) {
-        let weights = self.weights().map(|row| row.map(|w| w.to_bits()));
-        defmt::write!(f, "rational {}, weights {}/2^16", self.net(), weights);
-    }
-}
+rational!(RationalCurveNet, RationalCurve, K);
+rational!(RationalTriangleNet, RationalTriangle, N, LEN);
+rational!(RationalTensorNet, RationalTensor, M, H);

@@ -37,6 +37,7 @@ mod format;
 mod net;
 mod parameter;
 mod rational;
+mod rational_net;
 mod tensor;
 mod triangle;
 
@@ -45,6 +46,7 @@ pub use error::NetError;
 pub use net::{CurveNet, Surface, SurfaceNet, TensorNet, TriangleNet};
 pub use parameter::{Barycentric, Parameter};
 pub use rational::{RationalCurve, RationalTensor, RationalTriangle};
+pub use rational_net::{RationalCurveNet, RationalTensorNet, RationalTriangleNet};
 pub use tensor::{BicubicPatch, BilinearPatch, BiquadraticPatch, BiquinticPatch, Tensor};
 pub use triangle::{CubicTriangle, FlatTriangle, QuadraticTriangle, QuarticTriangle, QuinticTriangle, Triangle};
 

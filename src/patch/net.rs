@@ -1,6 +1,6 @@
 //! Views: borrowed nets with the degree erased.
 
-use super::{MAX_DEGREE, NetError, triangle_len};
+use super::{MAX_DEGREE, NetError, RationalTensorNet, RationalTriangleNet, triangle_len};
 use crate::geometry::{Axis, Bounds, Point3};
 use crate::num::{Coord, I16F16, I32F32, bits_i16f16, bits_i32f32};
 
@@ -31,6 +31,10 @@ pub enum SurfaceNet<'a, C = I16F16> {
     Triangle(TriangleNet<'a, C>),
     /// A tensor-product patch.
     Tensor(TensorNet<'a, C>),
+    /// A rational triangular patch.
+    RationalTriangle(RationalTriangleNet<'a, C>),
+    /// A rational tensor-product patch.
+    RationalTensor(RationalTensorNet<'a, C>),
 }
 
 /// Anything that has a surface net: the nets themselves, views, references to them.
@@ -46,7 +50,7 @@ const fn check_degree(degree: usize) -> Result<u8, NetError> {
     Ok(degree as u8)
 }
 
-const fn check_count(expected: usize, given: usize) -> Result<(), NetError> {
+pub(super) const fn check_count(expected: usize, given: usize) -> Result<(), NetError> {
     if expected != given {
         return Err(NetError::Count { expected, given });
     }
@@ -186,8 +190,20 @@ impl<'a, C: Coord> SurfaceNet<'a, C> {
     #[must_use]
     pub const fn points(&self) -> &'a [Point3<C>] {
         match self {
-            Self::Triangle(t) => t.points(),
-            Self::Tensor(t) => t.points(),
+            Self::Triangle(net) => net.points(),
+            Self::Tensor(net) => net.points(),
+            Self::RationalTriangle(net) => net.points(),
+            Self::RationalTensor(net) => net.points(),
+        }
+    }
+
+    /// The weights in storage order; `None` for a polynomial patch.
+    #[must_use]
+    pub const fn weights(&self) -> Option<&'a [I16F16]> {
+        match self {
+            Self::Triangle(_) | Self::Tensor(_) => None,
+            Self::RationalTriangle(net) => Some(net.weights()),
+            Self::RationalTensor(net) => Some(net.weights()),
         }
     }
 
@@ -195,8 +211,27 @@ impl<'a, C: Coord> SurfaceNet<'a, C> {
     #[must_use]
     pub const fn degrees(&self) -> (usize, usize) {
         match self {
-            Self::Triangle(t) => (t.degree(), t.degree()),
-            Self::Tensor(t) => t.degrees(),
+            Self::Triangle(net) => (net.degree(), net.degree()),
+            Self::Tensor(net) => net.degrees(),
+            Self::RationalTriangle(net) => (net.control_net().degree(), net.control_net().degree()),
+            Self::RationalTensor(net) => net.control_net().degrees(),
+        }
+    }
+
+    /// Whether the domain is a triangle.
+    #[must_use]
+    pub const fn is_triangle(&self) -> bool {
+        matches!(self, Self::Triangle(_) | Self::RationalTriangle(_))
+    }
+
+    /// The net without its weights.
+    #[must_use]
+    pub const fn control_net(&self) -> Self {
+        match self {
+            Self::Triangle(net) => Self::Triangle(*net),
+            Self::Tensor(net) => Self::Tensor(*net),
+            Self::RationalTriangle(net) => Self::Triangle(net.control_net()),
+            Self::RationalTensor(net) => Self::Tensor(net.control_net()),
         }
     }
 

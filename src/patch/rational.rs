@@ -2,12 +2,14 @@
 //!
 //! The patch is Σ w_i B_i P_i / Σ w_i B_i. Only ratios of weights matter.
 
-use super::{Curve, CurveNet, NetError, Tensor, TensorNet, Triangle, TriangleNet};
+use super::{
+    Curve, NetError, RationalCurveNet, RationalTensorNet, RationalTriangleNet, Surface, SurfaceNet, Tensor, Triangle,
+};
 use crate::geometry::{Affine, GeometryError, Perspective, Point3};
 use crate::num::{Coord, I16F16};
 
 /// The first weight that is not positive, if any.
-const fn check_weights(weights: &[I16F16]) -> Result<(), NetError> {
+pub(super) const fn check_weights(weights: &[I16F16]) -> Result<(), NetError> {
     let mut index = 0;
     while index < weights.len() {
         let bits = weights[index].to_bits();
@@ -27,7 +29,7 @@ const fn check_weights(weights: &[I16F16]) -> Result<(), NetError> {
 /// // A quarter circle of radius 100, with the weights 1, 1, 2.
 /// let net = QuadraticCurve::from_ints([[100, 0, 0], [100, 100, 0], [0, 100, 0]])?;
 /// let arc = RationalCurve::new(net, [1, 1, 2].map(I16F16::from_num))?;
-/// let p = arc.eval(Parameter::HALF); // (60, 80): 3-4-5
+/// let p = arc.net().eval(Parameter::HALF); // (60, 80): 3-4-5
 /// assert_eq!((p.x, p.y), (I16F16::from_num(60), I16F16::from_num(80)));
 /// # Ok::<(), embedded_surfaces::patch::NetError>(())
 /// ```
@@ -63,10 +65,10 @@ impl<const K: usize, C: Coord> RationalCurve<K, C> {
         }
     }
 
-    /// The control points, borrowed.
+    /// The control points and weights, borrowed, with the degree erased.
     #[must_use]
-    pub const fn net(&self) -> CurveNet<'_, C> {
-        self.net.net()
+    pub const fn net(&self) -> RationalCurveNet<'_, C> {
+        RationalCurveNet::of_checked(self.net.net(), &self.weights)
     }
 
     /// The weights, all positive.
@@ -96,10 +98,10 @@ impl<const N: usize, const LEN: usize, C: Coord> RationalTriangle<N, LEN, C> {
         }
     }
 
-    /// The control points, borrowed.
+    /// The control points and weights, borrowed, with the degree erased.
     #[must_use]
-    pub const fn net(&self) -> TriangleNet<'_, C> {
-        self.net.net()
+    pub const fn net(&self) -> RationalTriangleNet<'_, C> {
+        RationalTriangleNet::of_checked(self.net.net(), &self.weights)
     }
 
     /// The weights in storage order, all positive.
@@ -129,10 +131,10 @@ impl<const M: usize, const H: usize, C: Coord> RationalTensor<M, H, C> {
         }
     }
 
-    /// The control points, borrowed.
+    /// The control points and weights, borrowed, with the degree erased.
     #[must_use]
-    pub const fn net(&self) -> TensorNet<'_, C> {
-        self.net.net()
+    pub const fn net(&self) -> RationalTensorNet<'_, C> {
+        RationalTensorNet::of_checked(self.net.net(), self.weights.as_flattened())
     }
 
     /// The weights, `weights[i][j]`, all positive.
@@ -147,6 +149,18 @@ impl<const M: usize, const H: usize, C: Coord> RationalTensor<M, H, C> {
     /// [`GeometryError::OutOfRange`] where a control point leaves the legal range.
     pub fn transform(&self, map: &Affine) -> Result<Self, GeometryError> {
         Ok(Self { net: self.net.transform(map)?, weights: self.weights })
+    }
+}
+
+impl<const N: usize, const LEN: usize, C: Coord> Surface<C> for RationalTriangle<N, LEN, C> {
+    fn surface(&self) -> SurfaceNet<'_, C> {
+        SurfaceNet::RationalTriangle(self.net())
+    }
+}
+
+impl<const M: usize, const H: usize, C: Coord> Surface<C> for RationalTensor<M, H, C> {
+    fn surface(&self) -> SurfaceNet<'_, C> {
+        SurfaceNet::RationalTensor(self.net())
     }
 }
 

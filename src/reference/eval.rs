@@ -5,7 +5,7 @@
 
 use crate::geometry::Point3;
 use crate::num::{Coord, I16F16};
-use crate::patch::{CurveNet, MAX_DEGREE, SurfaceNet, TensorNet, TriangleNet};
+use crate::patch::{CurveNet, MAX_DEGREE, SurfaceNet};
 
 /// Values of B_0 ..= B_n; 0 past n.
 pub(super) type Basis = [f64; MAX_DEGREE + 1];
@@ -47,14 +47,33 @@ fn triangle_place(j: usize, k: usize) -> usize {
     (0..=j + k).sum::<usize>() + k
 }
 
-fn add_scaled(sum: &mut [f64; 3], weight: f64, value: [f64; 3]) {
+fn add_scaled<const N: usize>(sum: &mut [f64; N], weight: f64, value: [f64; N]) {
     for (sum, value) in sum.iter_mut().zip(value) {
         *sum += weight * value;
     }
 }
 
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+fn minus<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
+    core::array::from_fn(|c| a[c] - b[c])
+}
+
+/// Control point `index` in homogeneous coordinates: (w x, w y, w z, w), each product exact.
+pub(super) fn homogeneous<C: Coord>(net: SurfaceNet<'_, C>, index: usize) -> [f64; 4] {
+    let [x, y, z] = coordinates(&net.points()[index]);
+    let w = net.weights().map_or(1.0, |weights| f64::from(weights[index].to_bits()) / 65536.0);
+    [w * x, w * y, w * z, w]
+}
+
+/// (x, y, z, w) to (x/w, y/w, z/w); a polynomial has w = 1 and is left alone.
+fn project([x, y, z, w]: [f64; 4], rational: bool) -> [f64; 3] {
+    if rational { [x / w, y / w, z / w] } else { [x, y, z] }
+}
+
+/// The derivative of the projected point from value and derivative in homogeneous coordinates: (A' − S W')/W.
+fn project_slope(value: [f64; 4], slope: [f64; 4], rational: bool) -> [f64; 3] {
+    let s = project(value, rational);
+    let raw = [slope[0], slope[1], slope[2]];
+    if rational { core::array::from_fn(|c| (raw[c] - s[c] * slope[3]) / value[3]) } else { raw }
 }
 
 /// The values at 0 ..= n with their indices.
@@ -63,8 +82,8 @@ fn indexed(n: usize, values: Basis) -> impl Iterator<Item = (usize, f64)> + Clon
 }
 
 /// Σ B_i^n(t) · `value`(i).
-fn curve_sum(n: usize, t: f64, value: impl Fn(usize) -> [f64; 3]) -> [f64; 3] {
-    let mut sum = [0.0; 3];
+fn curve_sum<const N: usize>(n: usize, t: f64, value: impl Fn(usize) -> [f64; N]) -> [f64; N] {
+    let mut sum = [0.0; N];
     for (i, weight) in indexed(n, bernstein(n, t)) {
         add_scaled(&mut sum, weight, value(i));
     }
@@ -72,9 +91,13 @@ fn curve_sum(n: usize, t: f64, value: impl Fn(usize) -> [f64; 3]) -> [f64; 3] {
 }
 
 /// Σ B_i^m(r) B_j^h(s) · `value`(i, j).
-fn tensor_sum((m, h): (usize, usize), (r, s): (f64, f64), value: impl Fn(usize, usize) -> [f64; 3]) -> [f64; 3] {
+fn tensor_sum<const N: usize>(
+    (m, h): (usize, usize),
+    (r, s): (f64, f64),
+    value: impl Fn(usize, usize) -> [f64; N],
+) -> [f64; N] {
     let by_s = indexed(h, bernstein(h, s));
-    let mut sum = [0.0; 3];
+    let mut sum = [0.0; N];
     for (i, by_r) in indexed(m, bernstein(m, r)) {
         for (j, by_s) in by_s.clone() {
             add_scaled(&mut sum, by_r * by_s, value(i, j));
@@ -84,9 +107,9 @@ fn tensor_sum((m, h): (usize, usize), (r, s): (f64, f64), value: impl Fn(usize, 
 }
 
 /// Σ n!/(i!j!k!) u^i v^j w^k · `value`(j, k) over i + j + k = n (ibid., "Bézier Triangles").
-fn triangle_sum(n: usize, (u, v): (f64, f64), value: impl Fn(usize, usize) -> [f64; 3]) -> [f64; 3] {
+fn triangle_sum<const N: usize>(n: usize, (u, v): (f64, f64), value: impl Fn(usize, usize) -> [f64; N]) -> [f64; N] {
     let (by_u, by_w) = (powers(n, u), powers(n, 1.0 - u - v));
-    let mut sum = [0.0; 3];
+    let mut sum = [0.0; N];
     for (j, by_v) in indexed(n, powers(n, v)) {
         for (k, by_w) in indexed(n - j, by_w) {
             let i = n - j - k;
@@ -136,13 +159,16 @@ pub fn curve_derivative<C: Coord>(net: CurveNet<'_, C>, t: f64) -> [f64; 3] {
 /// ```
 #[must_use]
 pub fn point<C: Coord>(net: SurfaceNet<'_, C>, u: f64, v: f64) -> [f64; 3] {
-    let p = |index: usize| coordinates(&net.points()[index]);
-    match net {
-        SurfaceNet::Triangle(t) => triangle_sum(t.degree(), (u, v), |j, k| p(triangle_place(j, k))),
-        SurfaceNet::Tensor(t) => {
-            let (m, h) = t.degrees();
-            tensor_sum((m, h), (u, v), |i, j| p(i * (h + 1) + j))
-        }
+    project(homogeneous_point(net, u, v), net.weights().is_some())
+}
+
+fn homogeneous_point<C: Coord>(net: SurfaceNet<'_, C>, u: f64, v: f64) -> [f64; 4] {
+    let p = |index: usize| homogeneous(net, index);
+    let (m, h) = net.degrees();
+    if net.is_triangle() {
+        triangle_sum(m, (u, v), |j, k| p(triangle_place(j, k)))
+    } else {
+        tensor_sum((m, h), (u, v), |i, j| p(i * (h + 1) + j))
     }
 }
 
@@ -159,24 +185,23 @@ pub fn point<C: Coord>(net: SurfaceNet<'_, C>, u: f64, v: f64) -> [f64; 3] {
 /// ```
 #[must_use]
 pub fn partials<C: Coord>(net: SurfaceNet<'_, C>, u: f64, v: f64) -> [[f64; 3]; 2] {
-    match net {
-        SurfaceNet::Triangle(t) => triangle_partials(t, u, v),
-        SurfaceNet::Tensor(t) => tensor_partials(t, u, v),
-    }
+    let value = homogeneous_point(net, u, v);
+    let slopes = if net.is_triangle() { triangle_partials(net, u, v) } else { tensor_partials(net, u, v) };
+    slopes.map(|slope| project_slope(value, slope, net.weights().is_some()))
 }
 
-/// n Σ B^(n−1) (b\[i+1,j,k\] − b\[i,j,k+1\]) and n Σ B^(n−1) (b\[i,j+1,k\] − b\[i,j,k+1\]).
-fn triangle_partials<C: Coord>(net: TriangleNet<'_, C>, u: f64, v: f64) -> [[f64; 3]; 2] {
-    let p = |j: usize, k: usize| coordinates(&net.points()[triangle_place(j, k)]);
-    let n = net.degree();
+/// n Σ B^(n−1) (b\[i+1,j,k\] − b\[i,j,k+1\]) and n Σ B^(n−1) (b\[i,j+1,k\] − b\[i,j,k+1\]), homogeneous.
+fn triangle_partials<C: Coord>(net: SurfaceNet<'_, C>, u: f64, v: f64) -> [[f64; 4]; 2] {
+    let p = |j: usize, k: usize| homogeneous(net, triangle_place(j, k));
+    let n = net.degrees().0;
     let by_u = triangle_sum(n - 1, (u, v), |j, k| minus(p(j, k), p(j, k + 1)));
     let by_v = triangle_sum(n - 1, (u, v), |j, k| minus(p(j + 1, k), p(j, k + 1)));
     [by_u, by_v].map(|d| d.map(|c| n as f64 * c))
 }
 
-fn tensor_partials<C: Coord>(net: TensorNet<'_, C>, r: f64, s: f64) -> [[f64; 3]; 2] {
+fn tensor_partials<C: Coord>(net: SurfaceNet<'_, C>, r: f64, s: f64) -> [[f64; 4]; 2] {
     let (m, h) = net.degrees();
-    let p = |i: usize, j: usize| coordinates(&net.points()[i * (h + 1) + j]);
+    let p = |i: usize, j: usize| homogeneous(net, i * (h + 1) + j);
     let by_r = tensor_sum((m - 1, h), (r, s), |i, j| minus(p(i + 1, j), p(i, j)));
     let by_s = tensor_sum((m, h - 1), (r, s), |i, j| minus(p(i, j + 1), p(i, j)));
     [by_r.map(|c| m as f64 * c), by_s.map(|c| h as f64 * c)]

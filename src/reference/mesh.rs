@@ -1,6 +1,6 @@
 //! Fine meshes over a surface, row by row.
 
-use super::eval::{bernstein, coordinates, factorial, powers};
+use super::eval::{bernstein, factorial, homogeneous, powers};
 use crate::num::Coord;
 use crate::patch::{MAX_DEGREE, SurfaceNet};
 use std::vec;
@@ -29,11 +29,15 @@ pub(super) struct Mesh {
     counts: (u32, u32),
     degrees: (usize, usize),
     triangle: bool,
-    /// x and y of the control points.
-    points: Vec<[f64; 2]>,
+    rational: bool,
+    /// w·x, w·y and w of the control points; w = 1 for a polynomial.
+    points: Vec<Homogeneous>,
     /// d + 1 values for each a = 0 ..= n_r: B_i^d(a/n_r), or (a/n)^i for a triangle.
     table: Vec<f64>,
 }
+
+/// (w x, w y, w).
+type Homogeneous = [f64; 3];
 
 /// Nearest multiple of 2^-24, ties away from 0. |c| ≤ 2^26, so the result is below 2^51 and exact.
 fn snap(c: f64) -> i64 {
@@ -47,7 +51,7 @@ fn fraction(a: u32, n: u32) -> f64 {
 impl Mesh {
     /// The mesh over `net`; a triangle takes the larger count, and a count of 0 is taken as 1.
     pub(super) fn new<C: Coord>(net: SurfaceNet<'_, C>, counts: (u32, u32)) -> Self {
-        let triangle = matches!(net, SurfaceNet::Triangle(_));
+        let (triangle, rational) = (net.is_triangle(), net.weights().is_some());
         let (r, s) = (counts.0.max(1), counts.1.max(1));
         let counts = if triangle { (r.max(s), r.max(s)) } else { (r, s) };
         let degrees = net.degrees();
@@ -56,9 +60,14 @@ impl Mesh {
         for a in 0..=counts.0 {
             table.extend_from_slice(&basis(degrees.0, fraction(a, counts.0))[..=degrees.0]);
         }
-        let xy = |[x, y, _]: [f64; 3]| [x, y];
-        let points = net.points().iter().map(|p| xy(coordinates(p))).collect();
-        Self { counts, degrees, triangle, points, table }
+        let flat = |[x, y, _, w]: [f64; 4]| [x, y, w];
+        let points = (0..net.points().len()).map(|index| flat(homogeneous(net, index))).collect();
+        Self { counts, degrees, triangle, rational, points, table }
+    }
+
+    /// The pixel position of a homogeneous point.
+    fn place(&self, [x, y, w]: Homogeneous) -> Vertex {
+        if self.rational { [x / w, y / w].map(snap) } else { [x, y].map(snap) }
     }
 
     /// The number of the last row.
@@ -77,15 +86,12 @@ impl Mesh {
     fn tensor_row(&self, row: u32, out: &mut Vec<Vertex>) {
         let (m, h) = self.degrees;
         let by_s = bernstein(h, fraction(row, self.counts.1));
-        let mut columns = [[0.0; 2]; MAX_DEGREE + 1];
+        let mut columns = [[0.0; 3]; MAX_DEGREE + 1];
         for (column, points) in columns.iter_mut().zip(self.points.chunks_exact(h + 1)) {
-            for (weight, [x, y]) in by_s.into_iter().zip(points) {
-                column[0] += weight * x;
-                column[1] += weight * y;
-            }
+            *column = weighted_sum(&by_s, points);
         }
         let columns = &columns[..=m];
-        out.extend(self.table.chunks_exact(m + 1).map(|weights| weighted_sum(weights, columns).map(snap)));
+        out.extend(self.table.chunks_exact(m + 1).map(|weights| self.place(weighted_sum(weights, columns))));
     }
 
     /// A row is Σ_i u^i Σ_k w^k c_ik with c_ik = n!/(i!j!k!) v^j b\[i,j,k\].
@@ -97,26 +103,26 @@ impl Mesh {
         // w falls as u rises.
         let by_w = self.table[..length * (n + 1)].chunks_exact(n + 1).rev();
         out.extend(by_u.zip(by_w).map(|(u, w)| {
-            let mut inner = [[0.0; 2]; MAX_DEGREE + 1];
+            let mut inner = [[0.0; 3]; MAX_DEGREE + 1];
             for (i, (inner, terms)) in inner.iter_mut().zip(&terms).enumerate().take(n + 1) {
                 *inner = weighted_sum(&w[..=n - i], terms);
             }
-            weighted_sum(u, &inner).map(snap)
+            self.place(weighted_sum(u, &inner))
         }));
     }
 
     /// c_ik of a row.
-    fn row_terms(&self, row: u32) -> [[[f64; 2]; MAX_DEGREE + 1]; MAX_DEGREE + 1] {
+    fn row_terms(&self, row: u32) -> [[Homogeneous; MAX_DEGREE + 1]; MAX_DEGREE + 1] {
         let n = self.degrees.0;
         let by_v = powers(n, fraction(row, self.counts.1));
-        let mut terms = [[[0.0; 2]; MAX_DEGREE + 1]; MAX_DEGREE + 1];
+        let mut terms = [[[0.0; 3]; MAX_DEGREE + 1]; MAX_DEGREE + 1];
         let mut points = self.points.iter();
         // The storage order: i descending, then j descending.
         for i in (0..=n).rev() {
-            for (k, [x, y]) in (0..=n - i).zip(&mut points) {
+            for (k, point) in (0..=n - i).zip(&mut points) {
                 let j = n - i - k;
                 let weight = factorial(n) / (factorial(i) * factorial(j) * factorial(k)) * by_v[j];
-                terms[i][k] = [weight * x, weight * y];
+                terms[i][k] = point.map(|c| weight * c);
             }
         }
         terms
@@ -140,11 +146,12 @@ impl Mesh {
     }
 }
 
-fn weighted_sum(weights: &[f64], points: &[[f64; 2]]) -> [f64; 2] {
-    let mut sum = [0.0; 2];
-    for (weight, [x, y]) in weights.iter().zip(points) {
-        sum[0] += weight * x;
-        sum[1] += weight * y;
+fn weighted_sum(weights: &[f64], points: &[Homogeneous]) -> Homogeneous {
+    let mut sum = [0.0; 3];
+    for (weight, point) in weights.iter().zip(points) {
+        for (sum, c) in sum.iter_mut().zip(point) {
+            *sum += weight * c;
+        }
     }
     sum
 }

@@ -4,9 +4,11 @@ use super::light::Light;
 use super::pen::Pen;
 use super::tile::{Area, Paint, Tile};
 use super::{RenderError, Statistics};
-use crate::forward::{Budget, Form, Kernel, LatticeError, Residual, Steps, Visit, Walker, tangent_bits};
+use crate::forward::{
+    Budget, Form, Kernel, LatticeError, QuotientWalker, Residual, Sampling, Steps, Visit, Walker, tangent_bits,
+};
 use crate::geometry::Bounds;
-use crate::num::{Coord, I16F16};
+use crate::num::{Coord, I16F16, Word};
 use crate::patch::{Surface, SurfaceNet};
 
 /// How patches are drawn.
@@ -103,23 +105,46 @@ enum Width {
     Full128,
 }
 
-/// The form, budget and walker of a patch at its hole-free step counts.
-fn plan<'a>(net: SurfaceNet<'a>, style: Style) -> Result<(Form<'a>, Budget, Width), LatticeError> {
-    let steps = Steps::hole_free(net);
-    let form = Form::surface(net, (steps.r(), steps.s()));
-    let budget = Budget::of(&form)?;
-    let points = 32 << (budget.accumulator as u32);
-    let bits = if style == Style::Shaded { tangent_bits(&form, &budget).max(points) } else { points };
-    let width = match (bits, form.degree()) {
-        (..=64, ..4) => Width::Cubic64,
-        (..=64, _) => Width::Full64,
-        (..=128, _) => Width::Full128,
-        _ => {
-            let fraction_bits = budget.fraction_bits;
-            return Err(LatticeError::Budget { degrees: form.degrees, steps: form.steps, fraction_bits, bits });
+/// One lattice of a patch.
+#[derive(Clone, Copy, Debug)]
+struct Plan<'a> {
+    form: Form<'a>,
+    budget: Budget,
+    width: Width,
+}
+
+impl<'a> Plan<'a> {
+    fn of(form: Form<'a>, style: Style) -> Result<Self, LatticeError> {
+        let budget = Budget::of(&form)?;
+        let points = 32 << (budget.accumulator as u32);
+        let bits = if style == Style::Shaded { tangent_bits(&form, &budget).max(points) } else { points };
+        let width = match (bits, form.degree()) {
+            (..=64, ..4) => Width::Cubic64,
+            (..=64, _) => Width::Full64,
+            (..=128, _) => Width::Full128,
+            _ => {
+                let fraction_bits = budget.fraction_bits;
+                return Err(LatticeError::Budget { degrees: form.degrees, steps: form.steps, fraction_bits, bits });
+            }
+        };
+        Ok(Self { form, budget, width })
+    }
+}
+
+/// The hole-free lattices of a patch: one, or a coarser one and its cells' centres where that takes fewer points and
+/// no wider accumulator.
+fn plans<'a>(net: SurfaceNet<'a>, style: Style) -> Result<(Plan<'a>, Option<Plan<'a>>), LatticeError> {
+    let form = |steps: Steps| Form::surface(net, (steps.r(), steps.s()));
+    let sampling = Sampling::cheapest(net);
+    if sampling.centres {
+        let coarse = form(sampling.steps);
+        if let (Ok(corners), Ok(centres)) = (Plan::of(coarse, style), Plan::of(coarse.centres(), style))
+            && centres.width != Width::Full128
+        {
+            return Ok((corners, Some(centres)));
         }
-    };
-    Ok((form, budget, width))
+    }
+    Ok((Plan::of(form(Steps::hole_free(net)), style)?, None))
 }
 
 impl<'a, S: Surface> Scene<'a, S> {
@@ -131,7 +156,7 @@ impl<'a, S: Surface> Scene<'a, S> {
         let mut all: Option<Bounds> = None;
         for (index, patch) in patches.iter().enumerate() {
             let net = patch.surface();
-            plan(net, style).map_err(|error| RenderError::Patch { index, error })?;
+            plans(net, style).map_err(|error| RenderError::Patch { index, error })?;
             let bounds = net.bounds();
             all = Some(all.map_or(bounds, |b| b.union(&bounds)));
         }
@@ -170,12 +195,14 @@ impl<'a, S: Surface> Scene<'a, S> {
                 continue;
             }
             // Planned in `new`, so it cannot fail here.
-            if let Ok((form, budget, width)) = plan(net, self.style) {
+            if let Ok((first, second)) = plans(net, self.style) {
                 statistics.patches += 1;
-                statistics.points += form.point_count();
-                match self.style {
-                    Style::Shaded => self.walk::<P, true>(tile, paint, (index, net), &form, &budget, width),
-                    Style::Flat => self.walk::<P, false>(tile, paint, (index, net), &form, &budget, width),
+                for plan in [Some(first), second].into_iter().flatten() {
+                    statistics.points += plan.form.point_count();
+                    match self.style {
+                        Style::Shaded => self.walk::<P, true>(tile, paint, (index, net), &plan),
+                        Style::Flat => self.walk::<P, false>(tile, paint, (index, net), &plan),
+                    }
                 }
             }
         }
@@ -187,32 +214,28 @@ impl<'a, S: Surface> Scene<'a, S> {
         tile: &mut Tile<'_, P::Pixel>,
         paint: &P,
         patch: (usize, SurfaceNet<'a>),
-        form: &Form<'_>,
-        budget: &Budget,
-        width: Width,
+        plan: &Plan<'a>,
     ) {
-        match width {
-            Width::Cubic64 => {
-                let kernel = Residual::<i64>::of(budget);
-                let pen = Pen::<P, SHADED>::new(tile, paint, &self.light, patch, form, self.window, &kernel);
-                run::<_, _, 4>(kernel, form, budget, pen);
-            }
-            Width::Full64 => {
-                let kernel = Residual::<i64>::of(budget);
-                let pen = Pen::<P, SHADED>::new(tile, paint, &self.light, patch, form, self.window, &kernel);
-                run::<_, _, 9>(kernel, form, budget, pen);
-            }
-            Width::Full128 => {
-                let kernel = Residual::<i128>::of(budget);
-                let pen = Pen::<P, SHADED>::new(tile, paint, &self.light, patch, form, self.window, &kernel);
-                run::<_, _, 9>(kernel, form, budget, pen);
-            }
+        let at = (&plan.form, plan.budget.scale);
+        let pen = Pen::<P, SHADED>::new(tile, paint, &self.light, patch, at, self.window);
+        match (plan.width, plan.form.weights().is_some()) {
+            (Width::Cubic64, false) => run::<_, _, 4>(Residual::<i64>::of(&plan.budget), plan, pen),
+            (Width::Full64, false) => run::<_, _, 9>(Residual::<i64>::of(&plan.budget), plan, pen),
+            (Width::Full128, false) => run::<_, _, 9>(Residual::<i128>::of(&plan.budget), plan, pen),
+            (Width::Cubic64, true) => run_quotient::<i64, _, 4>(plan, pen),
+            (_, true) => run_quotient::<i128, _, 9>(plan, pen),
         }
     }
 }
 
 /// One walk in a stack frame of its own: only the walker in use takes room.
 #[inline(never)]
-fn run<K: Kernel, V: Visit, const R: usize>(kernel: K, form: &Form<'_>, budget: &Budget, visitor: V) {
-    Walker::<K, R>::new(kernel, form, budget).visit(visitor);
+fn run<K: Kernel, V: Visit, const R: usize>(kernel: K, plan: &Plan<'_>, visitor: V) {
+    Walker::<K, R>::new(kernel, &plan.form, &plan.budget).visit(visitor);
+}
+
+/// The same for a rational patch.
+#[inline(never)]
+fn run_quotient<W: Word, V: Visit, const R: usize>(plan: &Plan<'_>, visitor: V) {
+    QuotientWalker::<W, R>::new(&plan.form, &plan.budget).visit(visitor);
 }

@@ -3,7 +3,7 @@
 
 use super::Light;
 use super::light::normal;
-use crate::forward::{At, Budget, Form, Kernel, Residual, Steps, Visit, Walker, tangent_bits};
+use crate::forward::{Budget, Form, Residual, Site, Steps, Visit, Walker, tangent_bits};
 use crate::patch::{BicubicPatch, CubicTriangle, Surface, SurfaceNet};
 use crate::reference;
 use std::vec::Vec;
@@ -14,9 +14,9 @@ struct Levels<'a>(Light, &'a mut Vec<(u32, u32, u8)>);
 impl Visit for Levels<'_> {
     const TANGENTS: bool = true;
 
-    fn point<K: Kernel, const R: usize>(self, at: &At<'_, K, R>) -> Self {
+    fn point<S: Site>(self, at: &S) -> Self {
         if let Some(normal) = normal(at.tangents()) {
-            self.1.push((at.i, at.j, self.0.level(normal)));
+            self.1.push((at.i(), at.j(), self.0.level(normal)));
         }
         self
     }

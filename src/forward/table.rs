@@ -1,0 +1,134 @@
+//! Difference tables: from control coefficients to the Newton differences of φ, modulo 2^w.
+
+use super::form::{Form, Kind};
+use crate::num::{BINOMIAL, SURJECTIONS, Word};
+
+/// `table[b][a]` = Δ_r^a Δ_s^b φ at some point; `R` is the largest order it has room for.
+pub(crate) type Table<W, const R: usize> = [[W; R]; R];
+
+/// Δ_r^a Δ_s^b φ(0, 0) of φ = n_r^m n_s^h Σ B_a B_b·coefficient(a, b).
+///
+/// φ is Σ c_kl i^k j^l with c_kl = (multinomial)·n^(…)·Δ_r^k Δ_s^l of the coefficients, and the a-th difference of
+/// i^k at 0 is a! S(k, a).
+///
+/// Row l ends at e = m, or m − l in a triangle: then the multinomial is C(h, l)·C(e, k) and the power of n
+/// (of n_r) is e − k for both kinds. The limits `R - 1` change nothing; with them no index can be out of bounds.
+#[inline(never)]
+pub(crate) fn difference_table<W: Word, const R: usize>(
+    form: &Form<'_>,
+    coefficient: impl Fn(usize, usize) -> i64,
+) -> Table<W, R> {
+    let (m, h) = (form.degrees.0.min(R - 1), form.degrees.1.min(R - 1));
+    let row_end = |b: usize| form.last_row_entry(b).min(R - 1);
+    let column_end = |a: usize| form.last_column_entry(a).min(R - 1);
+    let (steps_r, steps_s) = form.table_steps();
+    let power_r: [W; R] = powers(steps_r);
+    let power_s: [W; R] = powers(if form.kind == Kind::Triangle { 1 } else { steps_s });
+    let mut t = [[W::ZERO; R]; R];
+    for (b, row) in t[..=h].iter_mut().enumerate() {
+        let row = &mut row[..=row_end(b)];
+        for (a, entry) in row.iter_mut().enumerate() {
+            *entry = W::truncate(coefficient(a, b).into());
+        }
+        differences(row);
+    }
+    each_column(&mut t, m, |a, column| differences(&mut column[..=column_end(a)]));
+    for (b, (row, power)) in t[..=h].iter_mut().zip(power_s[..=h].iter().rev()).enumerate() {
+        let end = row_end(b);
+        let row = &mut row[..=end];
+        let by_s = power.wrapping_mul_i64(BINOMIAL[h][b].into());
+        for ((entry, choices), power) in row.iter_mut().zip(BINOMIAL[end]).zip(power_r[..=end].iter().rev()) {
+            *entry = entry.wrapping_mul_i64(choices.into()).wrapping_times(*power).wrapping_times(by_s);
+        }
+        to_newton(row);
+    }
+    each_column(&mut t, m, |a, column| to_newton(&mut column[..=column_end(a)]));
+    t
+}
+
+/// Moves a table one step along r: Δ^a ← Δ^a + Δ^(a+1).
+pub(crate) fn step_r<W: Word, const R: usize>(t: &mut Table<W, R>) {
+    for row in t {
+        step(row);
+    }
+}
+
+/// Moves a table one step along s.
+#[inline(always)]
+pub(crate) fn step_s<W: Word, const R: usize>(t: &mut Table<W, R>) {
+    for b in 0..R - 1 {
+        for a in 0..R {
+            t[b][a] = t[b][a].wrapping_plus(t[b + 1][a]);
+        }
+    }
+}
+
+/// Moves a row of differences one step.
+#[inline(always)]
+pub(crate) fn step<W: Word, const R: usize>(d: &mut [W; R]) {
+    for a in 0..R - 1 {
+        d[a] = d[a].wrapping_plus(d[a + 1]);
+    }
+}
+
+/// Differences over steps of two instead of one, in both directions: sample at 0, 2, 4, … and difference anew.
+pub(crate) fn double_steps<W: Word, const R: usize>(t: &mut Table<W, R>) {
+    t.iter_mut().for_each(double);
+    each_column(t, R - 1, |_, column| double(column));
+}
+
+fn double<W: Word, const R: usize>(d: &mut [W; R]) {
+    let (mut here, mut samples) = (*d, [W::ZERO; R]);
+    for sample in &mut samples {
+        *sample = here[0];
+        step(&mut here);
+        step(&mut here);
+    }
+    differences(&mut samples);
+    *d = samples;
+}
+
+/// 1, n, n², …
+fn powers<W: Word, const R: usize>(n: u32) -> [W; R] {
+    let mut powers = [W::ONE; R];
+    for k in 1..R {
+        powers[k] = powers[k - 1].wrapping_mul_i64(n.into());
+    }
+    powers
+}
+
+/// Applies `change` to the columns up to `last`.
+#[inline(always)]
+fn each_column<W: Word, const R: usize>(t: &mut Table<W, R>, last: usize, change: impl Fn(usize, &mut [W; R])) {
+    for a in 0..last.min(R - 1) + 1 {
+        let mut column = core::array::from_fn(|b| t[b][a]);
+        change(a, &mut column);
+        for (row, entry) in t.iter_mut().zip(column) {
+            row[a] = entry;
+        }
+    }
+}
+
+/// v_a to Δ^a v_0, in place.
+#[inline(never)]
+fn differences<W: Word>(values: &mut [W]) {
+    let mut rest = values;
+    while let Some((first, tail)) = rest.split_first_mut() {
+        let mut before = *first;
+        for value in &mut *tail {
+            let here = *value;
+            *value = here.wrapping_minus(before);
+            before = here;
+        }
+        rest = tail;
+    }
+}
+
+/// Coefficients of i^k to the differences of their sum at i = 0, in place.
+#[inline(never)]
+fn to_newton<W: Word>(values: &mut [W]) {
+    for a in 1..values.len().min(SURJECTIONS.len()) {
+        let terms = values[a..].iter().zip(&SURJECTIONS[a..]);
+        values[a] = terms.fold(W::ZERO, |sum, (value, by)| sum.wrapping_plus(value.wrapping_mul_i64(by[a].into())));
+    }
+}

@@ -1,0 +1,76 @@
+//! What a walk shows at each point, and to whom.
+
+use crate::num::Word;
+
+/// A point of a lattice as a visitor sees it.
+pub(crate) trait Site {
+    /// What tangents are made of.
+    type Word: Word;
+
+    /// The index in the row.
+    fn i(&self) -> u32;
+
+    /// The row.
+    fn j(&self) -> u32;
+
+    /// The rounded coordinates.
+    fn point(&self) -> [i32; 3];
+
+    /// Both tangents, each exact up to one truncation and a positive factor; only for visitors with
+    /// [`Visit::TANGENTS`].
+    fn tangents(&self) -> [[Self::Word; 3]; 2];
+
+    /// The bits below the rounded coordinate plus 1/2: about 2^bits times the fraction, below 2^bits.
+    fn below(&self, axis: usize, fraction: &Fraction) -> u32;
+}
+
+/// What happens at the points of a walk.
+pub(crate) trait Visit: Sized {
+    /// Whether [`Site::tangents`] is wanted.
+    const TANGENTS: bool = false;
+
+    /// Called at every point, in row order; the visitor is threaded through by value.
+    fn point<S: Site>(self, at: &S) -> Self;
+}
+
+/// How to read the bits below a coordinate.
+///
+/// Where the denominator N is constant: e·2^bits/N without a division. With N' = ⌊N/2^s⌋ of at most 16 bits and
+/// q = ⌊2^(16+bits)/(N' + 1)⌋ it is ⌊⌊e/2^s⌋·q/2^16⌋: below 2^bits, never decreasing in e, and at most one below the
+/// exact value for bits ≤ 8.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fraction {
+    pub(crate) bits: u32,
+    shift: u32,
+    factor: u32,
+}
+
+impl Fraction {
+    /// The reader for the constant denominator `scale`; `bits` is at most 8.
+    pub(crate) fn of(scale: u128, bits: u32) -> Self {
+        let shift = (128 - scale.leading_zeros()).saturating_sub(16);
+        let factor = (1_u32 << (16 + bits)).checked_div((scale >> shift) as u32 + 1).unwrap_or(0);
+        Self { bits, shift, factor }
+    }
+
+    #[inline(always)]
+    pub(crate) fn read<W: Word>(&self, residual: W) -> u32 {
+        let high: i32 = (residual >> self.shift as usize).as_();
+        (high as u32).wrapping_mul(self.factor) >> 16
+    }
+
+    /// ⌊e·2^bits/d⌋ for 0 ≤ e < d < 2^(w−1), by restoring division: for denominators that change from point to point.
+    #[inline(always)]
+    pub(crate) fn divide<W: Word>(&self, e: W, d: W) -> u32 {
+        let (mut rest, mut out) = (e, 0);
+        for _ in 0..self.bits {
+            rest = rest.wrapping_plus(rest);
+            out <<= 1;
+            if !rest.below(d) {
+                rest = rest.wrapping_minus(d);
+                out |= 1;
+            }
+        }
+        out
+    }
+}
