@@ -20,6 +20,9 @@ pub(crate) struct Form<'a> {
     pub(crate) steps: (u32, u32),
     /// The lattice of cell centres, ((i + 1/2)/n_r, (j + 1/2)/n_s), instead of (i/n_r, j/n_s).
     pub(crate) centred: bool,
+    /// Which corner is (0, 0) and which way rows run: 0 as stored; 1 transposed, or turned by a third for a
+    /// triangle; 2 turned twice.
+    turn: u8,
     points: &'a [Point3],
     weights: Option<&'a [I16F16]>,
 }
@@ -27,7 +30,7 @@ pub(crate) struct Form<'a> {
 impl<'a> Form<'a> {
     pub(crate) fn curve(net: CurveNet<'a>, steps: u32) -> Self {
         let (kind, degrees) = (Kind::Curve, (net.degree(), 0));
-        Self { kind, degrees, steps: (steps, 0), centred: false, points: net.points(), weights: None }
+        Self { kind, degrees, steps: (steps, 0), centred: false, turn: 0, points: net.points(), weights: None }
     }
 
     pub(crate) fn rational_curve(net: RationalCurveNet<'a>, steps: u32) -> Self {
@@ -37,13 +40,21 @@ impl<'a> Form<'a> {
     pub(crate) fn surface(net: SurfaceNet<'a>, steps: (u32, u32)) -> Self {
         let kind = if net.is_triangle() { Kind::Triangle } else { Kind::Tensor };
         let (points, weights) = (net.points(), net.weights());
-        Self { kind, degrees: net.degrees(), steps, centred: false, points, weights }
+        Self { kind, degrees: net.degrees(), steps, centred: false, turn: 0, points, weights }
     }
 
     /// The centres of the cells of this lattice; for a triangle those of its parallelograms, the halves along the
     /// third side included.
     pub(crate) fn centres(&self) -> Self {
         Self { centred: true, ..*self }
+    }
+
+    /// The same net with rows along another direction: s instead of r; along v = const, u = const and w = const for
+    /// the turns 0, 1 and 2 of a triangle. The step counts are those of the turned directions.
+    pub(crate) fn turned(&self, turn: u8, steps: (u32, u32)) -> Self {
+        let (m, h) = self.degrees;
+        let degrees = if self.kind == Kind::Tensor && turn == 1 { (h, m) } else { (m, h) };
+        Self { turn, degrees, steps, ..*self }
     }
 
     pub(crate) fn points(&self) -> &'a [Point3] {
@@ -69,12 +80,20 @@ impl<'a> Form<'a> {
         if self.kind == Kind::Triangle { self.degrees.0 - b } else { self.degrees.0 }
     }
 
-    /// Where control point (a, b) stands: b\[a, b, n−a−b\] of a triangle.
+    /// Where control point (a, b) stands; of a triangle b\[a,b,c\], b\[b,c,a\] or b\[c,a,b\] by its turn, c = n − a − b.
     fn index(&self, a: usize, b: usize) -> usize {
         match self.kind {
             Kind::Curve => a,
-            Kind::Tensor => a * (self.degrees.1 + 1) + b,
-            Kind::Triangle => triangle_index(b, self.degrees.0 - a - b),
+            Kind::Tensor if self.turn == 0 => a * (self.degrees.1 + 1) + b,
+            Kind::Tensor => b * (self.degrees.0 + 1) + a,
+            Kind::Triangle => {
+                let c = self.degrees.0 - a - b;
+                match self.turn {
+                    0 => triangle_index(b, c),
+                    1 => triangle_index(c, a),
+                    _ => triangle_index(a, b),
+                }
+            }
         }
     }
 

@@ -51,6 +51,7 @@ pub(crate) use budget::MAX_STEPS;
 pub(crate) use form::Form;
 pub(crate) use kernel::{Kernel, Residual};
 pub(crate) use quotient::QuotientWalker;
+pub(crate) use steps::row_count;
 pub(crate) use tangent::tangent_bits;
 pub(crate) use visit::{Fraction, Site, Visit};
 pub(crate) use walk::Walker;

@@ -235,9 +235,9 @@ impl<W: Word, const R: usize> QuotientWalker<W, R> {
             return visitor;
         }
         loop {
-            let mut row = self.row;
             let (mut i, j) = self.position;
-            loop {
+            let mut row = self.row;
+            while visitor.wants_row(j) {
                 visitor = visitor.point(&At { i, j, row: &row, weights: &self.weights });
                 if i == self.last_in_row {
                     break;

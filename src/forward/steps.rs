@@ -143,6 +143,12 @@ impl Sampling {
     }
 }
 
+/// The count at which rows of `form` are connected on the screen: no step along a row of a whole pixel in x or y.
+pub(crate) fn row_count(form: &Form<'_>) -> u32 {
+    let longest = screen_slopes(form)[0];
+    Steps::of_net(longest.checked_div(unit(form)).unwrap_or(0) + 1, 1).r
+}
+
 fn curve_count(form: &Form<'_>) -> u32 {
     let longest = (0..3).map(|axis| Axis::new(form, axis).slopes()[0]).max().unwrap_or(0);
     Steps::of_net(ceil_div(longest, unit(form)), 1).r

@@ -29,7 +29,13 @@ pub(crate) trait Visit: Sized {
     /// Whether [`Site::tangents`] is wanted.
     const TANGENTS: bool = false;
 
-    /// Called at every point, in row order; the visitor is threaded through by value.
+    /// Whether the points of row `j` are wanted.
+    fn wants_row(&self, j: u32) -> bool {
+        let _ = j;
+        true
+    }
+
+    /// Called at every point of the rows wanted, in row order; the visitor is threaded through by value.
     fn point<S: Site>(self, at: &S) -> Self;
 }
 

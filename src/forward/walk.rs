@@ -150,9 +150,9 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
             return visitor;
         }
         loop {
-            let mut row = self.row;
             let (mut i, j) = self.position;
-            loop {
+            let mut row = self.row;
+            while visitor.wants_row(j) {
                 let point = core::array::from_fn(|axis| self.kernel.read(row.x[axis], row.e[axis]));
                 visitor = visitor.point(&At { i, j, point, row: &row, weights: &self.weights });
                 if i == self.last_in_row {

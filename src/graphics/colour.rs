@@ -81,6 +81,69 @@ impl<C: Shade> Paint for Material<C> {
     }
 }
 
+/// A ramp of colours per patch: level 0 shows the first stop, 255 the last, in between the two nearest are mixed.
+///
+/// ```
+/// use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
+/// use embedded_surfaces::graphics::Ramps;
+/// use embedded_surfaces::render::{Fragment, Paint};
+/// let stops = [Rgb888::BLACK, Rgb888::RED, Rgb888::WHITE];
+/// let ramps = Ramps { ramps: &[&stops] };
+/// let at = |shade| ramps.pixel(Fragment { x: 0, y: 0, patch: 3, shade });
+/// assert_eq!((at(0), at(255)), (Rgb888::BLACK, Rgb888::WHITE));
+/// assert_eq!(at(64), Rgb888::new(128, 0, 0));
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Ramps<'a, C> {
+    /// The stops of each patch's ramp; patch k takes ramp k modulo their number. A ramp without stops is black.
+    pub ramps: &'a [&'a [C]],
+}
+
+/// A colour type whose values can be mixed.
+pub trait Mix: PixelColor + Default {
+    /// `self` at 0, `other` at 255, channels linear in between, rounded half up.
+    #[must_use]
+    fn mix(self, other: Self, amount: u8) -> Self;
+}
+
+/// a + (b − a)·amount/255, rounded half up.
+fn mixed(a: u8, b: u8, amount: u8) -> u8 {
+    let sum = u32::from(a) * u32::from(255 - amount) + u32::from(b) * u32::from(amount);
+    ((2 * sum + 255) / 510) as u8
+}
+
+macro_rules! mix {
+    (rgb: $($colour:ty),*; grey: $($grey:ty),*) => {
+        $(impl Mix for $colour {
+            fn mix(self, other: Self, amount: u8) -> Self {
+                let channel = |a, b| mixed(a, b, amount);
+                Self::new(channel(self.r(), other.r()), channel(self.g(), other.g()), channel(self.b(), other.b()))
+            }
+        })*
+        $(impl Mix for $grey {
+            fn mix(self, other: Self, amount: u8) -> Self {
+                Self::new(mixed(self.luma(), other.luma(), amount))
+            }
+        })*
+    };
+}
+
+mix!(rgb: Rgb555, Rgb565, Rgb666, Rgb888, Bgr555, Bgr565, Bgr666, Bgr888; grey: Gray2, Gray4, Gray8);
+
+impl<C: Mix> Paint for Ramps<'_, C> {
+    type Pixel = C;
+
+    fn pixel(&self, at: Fragment) -> C {
+        let stops = at.patch.checked_rem(self.ramps.len()).and_then(|k| self.ramps.get(k)).copied().unwrap_or(&[]);
+        let intervals = stops.len().saturating_sub(1) as u32;
+        let position = u32::from(at.shade) * intervals;
+        let (low, part) = (position / 255, position % 255);
+        let stop = |k: u32| stops.get(k as usize).copied();
+        let Some(from) = stop(low) else { return C::default() };
+        stop(low + 1).map_or(from, |to| from.mix(to, part as u8))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -12,7 +12,7 @@ mod band;
 mod colour;
 mod model;
 
-pub use colour::{Material, Shade};
+pub use colour::{Material, Mix, Ramps, Shade};
 pub use model::Model;
 
 /// The `embedded-graphics-core` that this crate was built with.

@@ -43,7 +43,7 @@ pub use audit::Audit;
 pub use coverage::{Centres, Coverage};
 pub use eval::{curve_derivative, curve_point, fixed_half_up, partials, point};
 pub use mesh::fine_mesh;
-pub use shade::{lambert, shade, unit_normal};
+pub use shade::{blinn_phong, lambert, shade, unit_normal};
 
 #[cfg(test)]
 mod samples;

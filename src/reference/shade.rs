@@ -69,6 +69,29 @@ pub fn lambert(normal: [f64; 3], light: [f64; 3], ambient: f64) -> f64 {
     255.0 * (ambient + (1.0 - ambient) * facing.max(0.0))
 }
 
+/// The Blinn–Phong shade of a unit normal: [`lambert`], and specular·max(0, n·h)^exponent where the light reaches, at
+/// most 255 in all. h is halfway between the light and the viewer; `specular` is in levels, 0 ..= 255.
+///
+/// ```
+/// use embedded_surfaces::reference::blinn_phong;
+/// let towards_viewer = [0.0, 0.0, -1.0];
+/// assert_eq!(blinn_phong(towards_viewer, towards_viewer, 0.0, (60.0, 8)), 255.0);
+/// assert_eq!(blinn_phong([1.0, 0.0, 0.0], towards_viewer, 0.5, (60.0, 8)), 127.5);
+/// ```
+#[must_use]
+pub fn blinn_phong(normal: [f64; 3], light: [f64; 3], ambient: f64, (specular, exponent): (f64, u8)) -> f64 {
+    let level = lambert(normal, light, ambient);
+    let turned = if normal[2] > 0.0 { normal.map(|c| -c) } else { normal };
+    let length = dot(light, light).sqrt();
+    if dot(turned, light) <= 0.0 {
+        return level;
+    }
+    let half = [light[0] / length, light[1] / length, light[2] / length - 1.0];
+    let cosine = dot(turned, half) / dot(half, half).sqrt();
+    let power = (0..exponent).fold(1.0, |power, _| power * cosine.max(0.0));
+    (level + specular * power).min(255.0)
+}
+
 /// The [`lambert`] shade of the surface at (u, v); `None` where its normal vanishes.
 ///
 /// ```

@@ -1,6 +1,6 @@
 //! Light and shade.
 
-use super::RenderError;
+use super::{Gloss, RenderError};
 use crate::num::Word;
 
 /// A light from a fixed direction, and the level of what it does not reach.
@@ -62,6 +62,31 @@ impl Light {
     #[must_use]
     pub const fn ambient(&self) -> u8 {
         self.ambient
+    }
+
+    /// The unit vector halfway between the light and the viewer, in 2^-15; 0 for a light behind the screen's axis.
+    fn halfway(&self) -> [i32; 3] {
+        let [x, y, z] = self.direction;
+        let v = [x, y, z - (1 << 15)].map(i64::from);
+        let length = v.iter().map(|c| c * c).sum::<i64>().unsigned_abs().isqrt() as i64;
+        v.map(|c| ((c << 16) + length).checked_div_euclid(2 * length).unwrap_or(0) as i32)
+    }
+
+    /// [`level`](Self::level) with a highlight: specular·max(0, N·H)^exponent more where the light reaches.
+    ///
+    /// N·H is kept to 2^-15, its power to exponent·2^-16: together with the Lambert part within 2 levels.
+    pub(super) fn glossy(&self, normal: [i32; 3], gloss: Gloss) -> u8 {
+        let level = self.level(normal);
+        let dot = |v: [i32; 3]| normal.iter().zip(&v).map(|(n, c)| n * c).sum::<i32>();
+        if dot(self.direction) <= 0 {
+            return level;
+        }
+        let length = normal.iter().map(|n| n.unsigned_abs().pow(2)).sum::<u32>().isqrt();
+        let along = dot(self.halfway()).max(0) as u32;
+        let cosine = (along + length / 2).checked_div(length).unwrap_or(0).min(1 << 15);
+        let power = (0..gloss.exponent()).fold(1_u32 << 15, |power, _| (power * cosine + (1 << 14)) >> 15);
+        let more = (u32::from(gloss.specular()) * power + (1 << 14)) >> 15;
+        level.saturating_add(more as u8)
     }
 
     /// The level of a surface with this normal vector, of any length.

@@ -16,20 +16,29 @@
 //! in the lattice's interpolant is hit, also along shared edges of patches, whatever their step counts.
 //!
 //! # Depth
-//! A `u16` per pixel: the exact lattice z with k more bits, (z + 1/2 − z_low)·2^k within one unit; z_low and k ≤ 8
-//! come from the scene's z range, so the whole range is used.
+//! A `u16` per pixel: 15 bits of depth and one that tells drawn from empty. The depth is the exact lattice z with k
+//! more bits, (z + 1/2 − z_low)·2^k within one unit; z_low and k ≤ 8 come from the scene's z range, so the whole range
+//! is used.
+//!
+//! # Lines
+//! Iso-parametric curves are rows of the patch's own exact lattice, at steps of less than a pixel: connected, and no
+//! pixel twice in a tile. Where patches hide them, the patches' depths are laid down first.
 //!
 //! # Shading
 //! Lambert, two-sided (the normal is turned to the viewer): level = ambient + (255 − ambient)·max(0, N·L). The
 //! tangents are exact forward differences, truncated once to 30 bits; their cross product is truncated once to 15
 //! bits and divided by its integer length. The level is within 1 of exact arithmetic wherever |S_r × S_s| is at
-//! least 1/1000 of its maximum over the patch. Where a tangent vanishes (the pole of a patch with a collapsed side)
+//! least 1/1000 of its maximum over the patch (within 2 with a [`Gloss`]). Where a tangent vanishes (the pole of a patch with a collapsed side)
 //! the normal 1/64 further inside is taken.
 
+mod depth;
 mod frame;
 mod light;
+mod lines;
 mod pen;
+mod plan;
 mod scene;
+mod style;
 mod tile;
 
 #[cfg(all(test, feature = "std"))]
@@ -37,7 +46,8 @@ mod tests;
 
 pub use frame::{Band, Frame, Statistics};
 pub use light::Light;
-pub use scene::{Scene, Style};
+pub use scene::Scene;
+pub use style::{Gloss, Lines, Style};
 pub use tile::{Area, Fragment, Paint, Tile};
 
 use crate::forward::LatticeError;

@@ -1,49 +1,17 @@
 //! Scenes: what is drawn, checked once.
 
+use super::depth::DepthWindow;
 use super::light::Light;
-use super::pen::Pen;
+use super::lines::{LineDrawing, families, family};
+use super::pen::{Occluder, Pen};
+use super::plan::fill_plans;
+use super::style::Style;
 use super::tile::{Area, Paint, Tile};
 use super::{RenderError, Statistics};
-use crate::forward::{
-    Budget, Form, Kernel, LatticeError, QuotientWalker, Residual, Sampling, Steps, Visit, Walker, tangent_bits,
-};
+use crate::forward::{Fraction, LatticeError};
 use crate::geometry::Bounds;
-use crate::num::{Coord, I16F16, Word};
+use crate::num::{Coord, I16F16};
 use crate::patch::{Surface, SurfaceNet};
-
-/// How patches are drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum Style {
-    /// Lambert shading with exact normals, two-sided.
-    #[default]
-    Shaded,
-    /// The same level, 255, everywhere.
-    Flat,
-}
-
-/// Where z lies in a scene: the depth of z is (z + 1/2 − low)·2^bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct DepthWindow {
-    low: i32,
-    pub(super) bits: u32,
-}
-
-impl DepthWindow {
-    /// The window of whole z values low ..= high, with as many bits below the unit as fit 16 in all, at most 8.
-    fn of(low: i32, high: i32) -> Self {
-        let levels = (high - low).unsigned_abs() + 1;
-        Self { low, bits: (16 - (32 - levels.leading_zeros()).min(16)).min(8) }
-    }
-
-    /// The depth of a rounded z and the fraction bits below it; never that of an empty pixel.
-    #[inline(always)]
-    pub(super) fn depth(self, z: i32, fraction: u32) -> u16 {
-        let depth = ((z.wrapping_sub(self.low) as u32) << self.bits) | fraction;
-        depth.min(u32::from(u16::MAX) - 1) as u16
-    }
-}
 
 /// Rounded coordinates of a box: what pixels its points can fall on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,10 +26,12 @@ impl PixelBox {
         Self { min: bounds.min.to_array().map(round), max: bounds.max.to_array().map(round) }
     }
 
-    fn meets(&self, area: &Area) -> bool {
+    /// Whether a pixel of the area is at most `reach` from the box.
+    fn meets(&self, area: &Area, reach: u8) -> bool {
+        let reach = i64::from(reach);
         let apart = |axis: usize, start: i32, len: u32| {
-            i64::from(self.max[axis]) < i64::from(start)
-                || i64::from(self.min[axis]) >= i64::from(start) + i64::from(len)
+            i64::from(self.max[axis]) + reach < i64::from(start)
+                || i64::from(self.min[axis]) - reach >= i64::from(start) + i64::from(len)
         };
         !apart(0, area.x, area.width) && !apart(1, area.y, area.height)
     }
@@ -97,56 +67,6 @@ impl<S> Clone for Scene<'_, S> {
 
 impl<S> Copy for Scene<'_, S> {}
 
-/// Which walker draws a patch. Order 4 holds cubics, 9 everything.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Width {
-    Cubic64,
-    Full64,
-    Full128,
-}
-
-/// One lattice of a patch.
-#[derive(Clone, Copy, Debug)]
-struct Plan<'a> {
-    form: Form<'a>,
-    budget: Budget,
-    width: Width,
-}
-
-impl<'a> Plan<'a> {
-    fn of(form: Form<'a>, style: Style) -> Result<Self, LatticeError> {
-        let budget = Budget::of(&form)?;
-        let points = 32 << (budget.accumulator as u32);
-        let bits = if style == Style::Shaded { tangent_bits(&form, &budget).max(points) } else { points };
-        let width = match (bits, form.degree()) {
-            (..=64, ..4) => Width::Cubic64,
-            (..=64, _) => Width::Full64,
-            (..=128, _) => Width::Full128,
-            _ => {
-                let fraction_bits = budget.fraction_bits;
-                return Err(LatticeError::Budget { degrees: form.degrees, steps: form.steps, fraction_bits, bits });
-            }
-        };
-        Ok(Self { form, budget, width })
-    }
-}
-
-/// The hole-free lattices of a patch: one, or a coarser one and its cells' centres where that takes fewer points and
-/// no wider accumulator.
-fn plans<'a>(net: SurfaceNet<'a>, style: Style) -> Result<(Plan<'a>, Option<Plan<'a>>), LatticeError> {
-    let form = |steps: Steps| Form::surface(net, (steps.r(), steps.s()));
-    let sampling = Sampling::cheapest(net);
-    if sampling.centres {
-        let coarse = form(sampling.steps);
-        if let (Ok(corners), Ok(centres)) = (Plan::of(coarse, style), Plan::of(coarse.centres(), style))
-            && centres.width != Width::Full128
-        {
-            return Ok((corners, Some(centres)));
-        }
-    }
-    Ok((Plan::of(form(Steps::hole_free(net)), style)?, None))
-}
-
 impl<'a, S: Surface> Scene<'a, S> {
     /// Checks every patch.
     ///
@@ -156,7 +76,7 @@ impl<'a, S: Surface> Scene<'a, S> {
         let mut all: Option<Bounds> = None;
         for (index, patch) in patches.iter().enumerate() {
             let net = patch.surface();
-            plans(net, style).map_err(|error| RenderError::Patch { index, error })?;
+            check(net, style).map_err(|error| RenderError::Patch { index, error })?;
             let bounds = net.bounds();
             all = Some(all.map_or(bounds, |b| b.union(&bounds)));
         }
@@ -175,67 +95,97 @@ impl<'a, S: Surface> Scene<'a, S> {
     /// patches.
     #[must_use]
     pub fn area(&self) -> Option<Area> {
+        let reach = i32::from(self.style.reach());
         self.pixels.map(|p| Area {
-            x: p.min[0],
-            y: p.min[1],
-            width: p.max[0].abs_diff(p.min[0]) + 1,
-            height: p.max[1].abs_diff(p.min[1]) + 1,
+            x: p.min[0] - reach,
+            y: p.min[1] - reach,
+            width: p.max[0].abs_diff(p.min[0]) + 1 + 2 * reach.unsigned_abs(),
+            height: p.max[1].abs_diff(p.min[1]) + 1 + 2 * reach.unsigned_abs(),
         })
     }
 
     /// Draws the patches that meet the tile, in order; what is nearer than what was there stays.
     ///
     /// Cost: every lattice point of those patches. Stack: 0.6 KB for patches up to degree 3, 2.3 KB above, 4.8 KB
-    /// where the lattice needs `i128`.
+    /// where the lattice needs `i128`; rational patches a third more.
     pub fn draw<P: Paint>(&self, tile: &mut Tile<'_, P::Pixel>, paint: &P) -> Statistics {
         let mut statistics = Statistics::default();
-        for (index, patch) in self.patches.iter().enumerate() {
-            let net = patch.surface();
-            if !PixelBox::of(&net.bounds()).meets(&tile.area()) {
-                continue;
-            }
-            // Planned in `new`, so it cannot fail here.
-            if let Ok((first, second)) = plans(net, self.style) {
-                statistics.patches += 1;
-                for plan in [Some(first), second].into_iter().flatten() {
-                    statistics.points += plan.form.point_count();
-                    match self.style {
-                        Style::Shaded => self.walk::<P, true>(tile, paint, (index, net), &plan),
-                        Style::Flat => self.walk::<P, false>(tile, paint, (index, net), &plan),
-                    }
-                }
-            }
+        if self.style.lines() == Some(true) {
+            self.each_visible(tile, |tile, _, net| self.occlude(tile, net, &mut statistics));
         }
+        self.each_visible(tile, |tile, patch, net| {
+            statistics.patches += 1;
+            if self.style.lines().is_some() {
+                let mut lines = LineDrawing { tile, paint, patch, net, window: self.window, points: 0 };
+                lines.draw(self.style);
+                statistics.points += lines.points;
+            } else if self.style.needs_normals() {
+                self.fill::<P, true>(tile, paint, (patch, net), &mut statistics);
+            } else {
+                self.fill::<P, false>(tile, paint, (patch, net), &mut statistics);
+            }
+        });
         statistics
     }
 
-    fn walk<P: Paint, const SHADED: bool>(
+    /// Calls `f` for every patch whose box meets the tile.
+    fn each_visible<'b, C: Copy>(
+        &self,
+        tile: &mut Tile<'b, C>,
+        mut f: impl FnMut(&mut Tile<'b, C>, usize, SurfaceNet<'a>),
+    ) {
+        for (index, patch) in self.patches.iter().enumerate() {
+            let net = patch.surface();
+            if PixelBox::of(&net.bounds()).meets(&tile.area(), self.style.reach()) {
+                f(tile, index, net);
+            }
+        }
+    }
+
+    fn fill<P: Paint, const NORMALS: bool>(
         &self,
         tile: &mut Tile<'_, P::Pixel>,
         paint: &P,
-        patch: (usize, SurfaceNet<'a>),
-        plan: &Plan<'a>,
+        (patch, net): (usize, SurfaceNet<'a>),
+        statistics: &mut Statistics,
     ) {
-        let at = (&plan.form, plan.budget.scale);
-        let pen = Pen::<P, SHADED>::new(tile, paint, &self.light, patch, at, self.window);
-        match (plan.width, plan.form.weights().is_some()) {
-            (Width::Cubic64, false) => run::<_, _, 4>(Residual::<i64>::of(&plan.budget), plan, pen),
-            (Width::Full64, false) => run::<_, _, 9>(Residual::<i64>::of(&plan.budget), plan, pen),
-            (Width::Full128, false) => run::<_, _, 9>(Residual::<i128>::of(&plan.budget), plan, pen),
-            (Width::Cubic64, true) => run_quotient::<i64, _, 4>(plan, pen),
-            (_, true) => run_quotient::<i128, _, 9>(plan, pen),
+        // Planned in `new`, so it cannot fail here.
+        let Ok((first, second)) = fill_plans(net, self.style) else { return };
+        for plan in [Some(first), second].into_iter().flatten() {
+            statistics.points += plan.form.point_count();
+            plan.walk(Pen::<P, NORMALS> {
+                tile,
+                paint,
+                light: &self.light,
+                style: self.style,
+                net,
+                form: &plan.form,
+                patch,
+                window: self.window,
+                fraction: Fraction::of(plan.budget.scale, self.window.bits),
+            });
+        }
+    }
+
+    fn occlude<C: Copy>(&self, tile: &mut Tile<'_, C>, net: SurfaceNet<'a>, statistics: &mut Statistics) {
+        let Ok((first, second)) = fill_plans(net, self.style) else { return };
+        for plan in [Some(first), second].into_iter().flatten() {
+            statistics.points += plan.form.point_count();
+            let fraction = Fraction::of(plan.budget.scale, self.window.bits);
+            plan.walk(Occluder { tile, window: self.window, fraction });
         }
     }
 }
 
-/// One walk in a stack frame of its own: only the walker in use takes room.
-#[inline(never)]
-fn run<K: Kernel, V: Visit, const R: usize>(kernel: K, plan: &Plan<'_>, visitor: V) {
-    Walker::<K, R>::new(kernel, &plan.form, &plan.budget).visit(visitor);
-}
-
-/// The same for a rational patch.
-#[inline(never)]
-fn run_quotient<W: Word, V: Visit, const R: usize>(plan: &Plan<'_>, visitor: V) {
-    QuotientWalker::<W, R>::new(&plan.form, &plan.budget).visit(visitor);
+/// Every lattice that the style will need fits the engine.
+fn check(net: SurfaceNet<'_>, style: Style) -> Result<(), LatticeError> {
+    if style.lines() != Some(false) {
+        fill_plans(net, style)?;
+    }
+    if let Style::Wire(lines) = style {
+        for turn in 0..families(net) {
+            family(net, lines, turn)?;
+        }
+    }
+    Ok(())
 }

@@ -1,22 +1,26 @@
 //! Shade levels of every lattice point against the `f64` reference.
 #![allow(clippy::disallowed_types, clippy::float_arithmetic)]
 
-use super::Light;
 use super::light::normal;
-use crate::forward::{Budget, Form, Residual, Site, Steps, Visit, Walker, tangent_bits};
-use crate::patch::{BicubicPatch, CubicTriangle, Surface, SurfaceNet};
+use super::plan::Plan;
+use super::{Gloss, Light};
+use crate::forward::{Form, Site, Steps, Visit};
+use crate::num::I16F16;
+use crate::patch::{BicubicPatch, BiquadraticPatch, CubicTriangle, RationalTensor, Surface, SurfaceNet};
 use crate::reference;
 use std::vec::Vec;
 
-/// Collects (i, j, level) of every point whose tangents span a plane.
-struct Levels<'a>(Light, &'a mut Vec<(u32, u32, u8)>);
+/// Collects (i, j, level, glossy level) of every point whose tangents span a plane.
+struct Levels<'a>(Light, &'a mut Vec<(u32, u32, [u8; 2])>);
+
+const GLOSS: Gloss = Gloss::new(200, 32);
 
 impl Visit for Levels<'_> {
     const TANGENTS: bool = true;
 
     fn point<S: Site>(self, at: &S) -> Self {
         if let Some(normal) = normal(at.tangents()) {
-            self.1.push((at.i(), at.j(), self.0.level(normal)));
+            self.1.push((at.i(), at.j(), [self.0.level(normal), self.0.glossy(normal, GLOSS)]));
         }
         self
     }
@@ -27,30 +31,31 @@ fn cross([a, b]: [[f64; 3]; 2]) -> f64 {
     c.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// The largest difference in levels where |S_r × S_s| ≥ 1e-3 of its maximum, and how many points that are.
-fn worst(net: SurfaceNet<'_>, light: Light) -> (f64, usize) {
+/// The largest differences in levels, plain and glossy, where |S_r × S_s| ≥ 1e-3 of its maximum, and the points.
+fn worst(net: SurfaceNet<'_>, light: Light) -> ([f64; 2], usize) {
     let steps = Steps::hole_free(net);
-    let form = Form::surface(net, (steps.r(), steps.s()));
-    let budget = Budget::of(&form).unwrap();
+    let plan = Plan::of(Form::surface(net, (steps.r(), steps.s())), true).unwrap();
     let mut levels = Vec::new();
-    let visitor = Levels(light, &mut levels);
-    if tangent_bits(&form, &budget) <= 64 && form.degree() < 4 {
-        Walker::<_, 4>::new(Residual::<i64>::of(&budget), &form, &budget).visit(visitor);
-    } else {
-        Walker::<_, 9>::new(Residual::<i128>::of(&budget), &form, &budget).visit(visitor);
-    }
-    let (x, y, z) = (light.direction()[0], light.direction()[1], light.direction()[2]);
-    let direction = [x, y, z].map(|c| f64::from(c) / 32768.0);
+    plan.walk(Levels(light, &mut levels));
+    let direction = light.direction().map(|c| f64::from(c) / 32768.0);
     let ambient = f64::from(light.ambient()) / 255.0;
     let at = |i: u32, j: u32| (f64::from(i) / f64::from(steps.r()), f64::from(j) / f64::from(steps.s()));
     let areas: Vec<f64> =
         levels.iter().map(|(i, j, _)| cross(reference::partials(net, at(*i, *j).0, at(*i, *j).1))).collect();
     let least = areas.iter().fold(0.0_f64, |a, b| a.max(*b)) * 1e-3;
-    let mut worst = (0.0_f64, 0);
-    for ((i, j, level), _) in levels.iter().zip(&areas).filter(|(_, area)| **area >= least) {
+    let mut worst = ([0.0_f64; 2], 0);
+    for ((i, j, ours), _) in levels.iter().zip(&areas).filter(|(_, area)| **area >= least) {
         let (u, v) = at(*i, *j);
-        let exact = reference::shade(net, u, v, direction, ambient).unwrap();
-        worst = (worst.0.max((f64::from(*level) - exact).abs()), worst.1 + 1);
+        let normal = reference::unit_normal(net, u, v).unwrap();
+        let gloss = (f64::from(GLOSS.specular()), GLOSS.exponent());
+        let exact = [
+            reference::lambert(normal, direction, ambient),
+            reference::blinn_phong(normal, direction, ambient, gloss),
+        ];
+        for k in 0..2 {
+            worst.0[k] = worst.0[k].max((f64::from(ours[k]) - exact[k]).abs());
+        }
+        worst.1 += 1;
     }
     worst
 }
@@ -79,7 +84,8 @@ fn levels_are_within_one_of_exact_arithmetic() {
     let lights = [Light::default(), Light::towards(1, 2, -1, 0).unwrap(), Light::towards(-5, 1, 0, 9).unwrap()];
     for light in lights {
         let (error, points) = worst(seed_p.surface(), light);
-        assert!(error <= 0.6 && points > 100_000, "seed P: {error} levels over {points} points");
+        assert!(error[0] <= 0.6 && error[1] <= 1.6, "seed P: {error:?} levels over {points} points");
+        assert!(points > 100_000);
         let mut seed = 42;
         for _ in 0..12 {
             let patch = BicubicPatch::new(core::array::from_fn(|i| {
@@ -90,7 +96,8 @@ fn levels_are_within_one_of_exact_arithmetic() {
             }))
             .unwrap();
             let (error, points) = worst(patch.surface(), light);
-            assert!(error <= 0.6 && points > 1000, "{error} levels over {points} points of {patch:?}");
+            assert!(error[0] <= 0.6 && error[1] <= 1.6, "{error:?} levels over {points} points of {patch:?}");
+            assert!(points > 1000);
         }
     }
 }
@@ -103,5 +110,22 @@ fn poles_keep_their_precision() {
     }))
     .unwrap();
     let (error, points) = worst(pole.surface(), Light::default());
-    assert!(error <= 0.6 && points > 1000, "{error} levels over {points} points");
+    assert!(error[0] <= 0.6 && error[1] <= 1.6 && points > 1000, "{error:?} levels over {points} points");
+}
+
+/// Rational patches: an octant of a sphere, with the weights 1, 1, 2, and random weights.
+#[test]
+fn rational_levels_are_within_one_of_exact_arithmetic() {
+    let mut seed = 7;
+    let octant = [[[90, 0, 0], [90, 90, 0], [0, 90, 0]], [[90, 0, 90], [90, 90, 90], [0, 90, 90]], [[0, 0, 90]; 3]];
+    let net = BiquadraticPatch::from_ints(octant).unwrap();
+    let exact = [[1, 1, 2], [1, 1, 2], [2, 2, 4]].map(|row| row.map(I16F16::from_num));
+    for case in 0..8 {
+        let random: [[I16F16; 3]; 3] = core::array::from_fn(|_| {
+            core::array::from_fn(|_| I16F16::from_bits((1 << 16) + random(&mut seed).unsigned_abs() as i32 % (3 << 16)))
+        });
+        let patch = RationalTensor::new(net, if case == 0 { exact } else { random }).unwrap();
+        let (error, points) = worst(patch.surface(), Light::default());
+        assert!(error[0] <= 0.6 && error[1] <= 1.6 && points > 1000, "{error:?} levels over {points} points");
+    }
 }

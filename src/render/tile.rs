@@ -61,7 +61,8 @@ impl<P: Copy, F: Fn(Fragment) -> P> Paint for F {
     }
 }
 
-/// The depth of a pixel that nothing was drawn to.
+/// What the depth buffer holds: a depth of 15 bits, and a lowest bit that is set where no colour was drawn. A pixel
+/// that nothing was drawn to.
 const FAR: u16 = u16::MAX;
 
 /// A rectangle of pixels in the caller's colour and depth buffers, row by row.
@@ -118,7 +119,7 @@ impl<'b, P: Copy> Tile<'b, P> {
     /// Whether something was drawn to the pixel with this index in [`pixels`](Self::pixels).
     #[must_use]
     pub fn is_covered(&self, index: usize) -> bool {
-        self.depth.get(index).is_some_and(|d| *d != FAR)
+        self.depth.get(index).is_some_and(|d| d & 1 == 0)
     }
 
     /// Whether something was drawn to the pixel (x, y).
@@ -135,16 +136,37 @@ impl<'b, P: Copy> Tile<'b, P> {
             .then(|| row as usize * self.area.width as usize + column as usize)
     }
 
-    /// Whether `depth` is nearer than what is at the index; it is stored then. `FAR` itself never is.
+    /// Whether `depth` is nearer than what is at the index; it is stored then, as drawn.
     #[inline(always)]
     pub(super) fn is_nearest(&mut self, index: usize, depth: u16) -> bool {
         match self.depth.get_mut(index) {
-            Some(stored) if depth < *stored => {
-                *stored = depth;
+            Some(stored) if depth < *stored >> 1 => {
+                *stored = depth << 1;
                 true
             }
             _ => false,
         }
+    }
+
+    /// Stores `depth` without a colour where it is nearer.
+    #[inline(always)]
+    pub(super) fn occlude(&mut self, index: usize, depth: u16) {
+        if let Some(stored) = self.depth.get_mut(index)
+            && depth < *stored >> 1
+        {
+            *stored = (depth << 1) | 1;
+        }
+    }
+
+    /// Whether a line at `depth` is seen: nearer than any line, at most `bias` behind a surface. Stored then.
+    #[inline(always)]
+    pub(super) fn is_seen(&mut self, index: usize, depth: u16, bias: u16) -> bool {
+        let Some(stored) = self.depth.get_mut(index) else { return false };
+        let seen = if *stored & 1 == 0 { depth < *stored >> 1 } else { depth.saturating_sub(bias) <= *stored >> 1 };
+        if seen {
+            *stored = depth << 1;
+        }
+        seen
     }
 
     #[inline(always)]

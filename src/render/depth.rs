@@ -1,0 +1,65 @@
+//! Depths: a scene's z range in 15 bits.
+
+use super::style::Lines;
+
+/// Where z lies in a scene: the depth of z is (z + 1/2 − low)·2^bits, divided by 2^drop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct DepthWindow {
+    low: i32,
+    /// Bits below the unit, at most 8.
+    pub(super) bits: u32,
+    /// 1 where the range is beyond 15 bits, else 0.
+    drop: u32,
+    deepest: u16,
+}
+
+impl DepthWindow {
+    /// The largest depth that something can have.
+    pub(super) const LARGEST: u16 = (1 << 15) - 2;
+
+    /// The window of whole z values low ..= high.
+    pub(super) fn of(low: i32, high: i32) -> Self {
+        let used = 32 - ((high - low).unsigned_abs() + 1).leading_zeros();
+        let (bits, drop) = (15_u32.saturating_sub(used).min(8), used.saturating_sub(15));
+        let mut window = Self { low, bits, drop, deepest: 1 };
+        window.deepest = window.depth(high, (1 << bits) - 1).max(1);
+        window
+    }
+
+    /// The depth of a rounded z and the fraction bits below it.
+    #[inline(always)]
+    pub(super) fn depth(self, z: i32, fraction: u32) -> u16 {
+        // Tips of normals may stand nearer than the window.
+        let depth = (((z.wrapping_sub(self.low).max(0) as u32) << self.bits) | fraction) >> self.drop;
+        depth.min(Self::LARGEST.into()) as u16
+    }
+
+    /// The lead of lines over surfaces.
+    pub(super) fn bias(self) -> u16 {
+        ((Lines::BIAS << self.bits) >> self.drop) as u16
+    }
+
+    /// The level of a depth between `near` at 0 and `far` at the deepest, rounded half up.
+    pub(super) fn cue(self, depth: u16, near: u8, far: u8) -> u8 {
+        let (near, far, deepest) = (i32::from(near), i32::from(far), i32::from(self.deepest));
+        let doubled = 2 * (far - near) * i32::from(depth.min(self.deepest)) + deepest;
+        (near + doubled.checked_div_euclid(2 * deepest).unwrap_or(0)) as u8
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_range_fills_15_bits_and_no_more() {
+        for (low, high) in [(0, 0), (-150, 170), (-32767, 32767), (5, 16388), (0, 32766)] {
+            let window = DepthWindow::of(low, high);
+            assert_eq!(window.depth(low, 0), 0);
+            let deepest = window.depth(high, (1 << window.bits) - 1);
+            assert!(deepest <= DepthWindow::LARGEST && (window.bits == 8 || deepest > 1 << 13), "{window:?} {deepest}");
+            assert_eq!((window.cue(0, 250, 10), window.cue(deepest, 250, 10)), (250, 10));
+        }
+        assert_eq!(DepthWindow::of(-150, 170).bits, 6);
+    }
+}

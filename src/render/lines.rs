@@ -1,0 +1,139 @@
+//! Lines: iso-parametric curves, control nets, normals.
+
+use super::depth::DepthWindow;
+use super::pen::{Liner, normal_inside};
+use super::plan::Plan;
+use super::style::{Lines, Style};
+use super::tile::{Paint, Tile};
+use crate::forward::{Form, Fraction, LatticeError, row_count};
+use crate::geometry::Point3;
+use crate::num::{Coord, I16F16};
+use crate::patch::{Barycentric, CurveNet, Parameter, SurfaceNet};
+
+/// Draws the lines of one patch.
+pub(super) struct LineDrawing<'a, 'b, P: Paint> {
+    pub(super) tile: &'a mut Tile<'b, P::Pixel>,
+    pub(super) paint: &'a P,
+    pub(super) patch: usize,
+    pub(super) net: SurfaceNet<'a>,
+    pub(super) window: DepthWindow,
+    pub(super) points: u64,
+}
+
+/// The lattice whose rows 0, stride, 2·stride, … are the iso-parametric curves of one family.
+pub(super) fn family<'a>(net: SurfaceNet<'a>, lines: Lines, turn: u8) -> Result<(Plan<'a>, u32), LatticeError> {
+    let count = lines.count();
+    let form = Form::surface(net, (1, 1)).turned(turn, (1, 1));
+    let along = row_count(&form);
+    if net.is_triangle() {
+        // A triangle has as many rows as steps: take a multiple of the curves, and skip the rows in between.
+        let stride = along.div_ceil(count.max(1));
+        let steps = stride.saturating_mul(count);
+        Ok((Plan::of(form.turned(turn, (steps, steps)), false)?, stride))
+    } else {
+        Ok((Plan::of(form.turned(turn, (along, count)), false)?, 1))
+    }
+}
+
+/// How many families of iso-parametric curves a patch has.
+pub(super) fn families(net: SurfaceNet<'_>) -> u8 {
+    if net.is_triangle() { 3 } else { 2 }
+}
+
+impl<'a, P: Paint> LineDrawing<'a, '_, P> {
+    pub(super) fn draw(&mut self, style: Style) {
+        match style {
+            Style::Wire(lines) => self.wire(lines),
+            Style::Net { .. } => self.control_net(),
+            Style::Normals { lines, length } => self.normals(lines, length),
+            _ => {}
+        }
+    }
+
+    fn walk(&mut self, plan: &Plan<'_>, stride: u32) {
+        let fraction = Fraction::of(plan.budget.scale, self.window.bits);
+        let (patch, window) = (self.patch, self.window);
+        plan.walk(Liner { tile: self.tile, paint: self.paint, patch, window, fraction, stride });
+    }
+
+    fn wire(&mut self, lines: Lines) {
+        for turn in 0..families(self.net) {
+            // Planned when the scene was made, so it cannot fail here.
+            if let Ok((plan, stride)) = family(self.net, lines, turn) {
+                self.points += u64::from(lines.count() + 1) * (u64::from(plan.form.steps.0) + 1);
+                self.walk(&plan, stride);
+            }
+        }
+    }
+
+    /// A straight line, as the exact lattice of a curve of degree 1.
+    fn segment(&mut self, ends: [Point3; 2]) {
+        let net = CurveNet::of_checked(&ends);
+        let steps = row_count(&Form::curve(net, 1));
+        // N is at most 2^16·2^16 and K at most 2 in x and y: any pair of legal points fits 128 bits.
+        if let Ok(plan) = Plan::of(Form::curve(net, steps), false) {
+            self.points += plan.form.point_count();
+            self.walk(&plan, 1);
+        }
+    }
+
+    fn control_net(&mut self) {
+        let (m, h) = self.net.degrees();
+        let net = self.net;
+        let at = |i: usize, j: usize| {
+            let index = if net.is_triangle() { crate::patch::triangle_index(i, j) } else { i * (h + 1) + j };
+            net.points().get(index).copied()
+        };
+        // A triangle is read by (j, k): then the same three differences are its edges.
+        let last = |i: usize| if net.is_triangle() { m - i } else { h };
+        for i in 0..=m {
+            for j in 0..=last(i) {
+                let ends = [(i + 1, j), (i, j + 1), (i + 1, j.wrapping_sub(1))];
+                let families = if net.is_triangle() { 3 } else { 2 };
+                for (a, b) in ends.into_iter().take(families) {
+                    let inside = a <= m && b != usize::MAX && b <= last(a.min(m));
+                    if let (true, Some(p), Some(q)) = (inside, at(i, j), at(a, b)) {
+                        self.segment([p, q]);
+                    }
+                }
+            }
+        }
+    }
+
+    fn normals(&mut self, lines: Lines, length: u8) {
+        let count = lines.count();
+        let form = Form::surface(self.net, (count, count));
+        for j in 0..=count {
+            for i in 0..=form.last_in_row(j) {
+                let Some(foot) = point(self.net, count, i, j) else { continue };
+                let Some(normal) = normal_inside(self.net, &form, i, j) else { continue };
+                if let Some(tip) = tip(foot, normal, length) {
+                    self.segment([foot, tip]);
+                }
+            }
+        }
+    }
+}
+
+/// The exactly rounded point at (i/n, j/n).
+fn point(net: SurfaceNet<'_>, n: u32, i: u32, j: u32) -> Option<Point3> {
+    let parameters = || Some((Parameter::new(i, n).ok()?, Parameter::new(j, n).ok()?));
+    let barycentric = || Barycentric::new(i, j, n.checked_sub(i + j)?).ok();
+    Some(match net {
+        SurfaceNet::Triangle(net) => net.eval(barycentric()?),
+        SurfaceNet::RationalTriangle(net) => net.eval(barycentric()?),
+        SurfaceNet::Tensor(net) => parameters().map(|(r, s)| net.eval(r, s))?,
+        SurfaceNet::RationalTensor(net) => parameters().map(|(r, s)| net.eval(r, s))?,
+    })
+}
+
+/// The point `length` units along the normal; `None` out of range.
+fn tip(foot: Point3, normal: [i32; 3], length: u8) -> Option<Point3> {
+    let size = i64::from(normal.iter().map(|n| n.unsigned_abs().pow(2)).sum::<u32>().isqrt());
+    let mut axes = foot.to_array();
+    for (c, n) in axes.iter_mut().zip(normal) {
+        let offset = ((i64::from(n) * i64::from(length)) << 16).checked_div(size)?;
+        *c = I16F16::from_legal_bits((c.bits() + offset).into())?;
+    }
+    Some(Point3::from_array(axes))
+}
