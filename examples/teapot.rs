@@ -10,11 +10,12 @@ use clap::Parser;
 use embedded_graphics::pixelcolor::Rgb888;
 use embedded_graphics::prelude::Size;
 use embedded_graphics_simulator::{OutputSettings, SimulatorDisplay};
-use embedded_surfaces::geometry::View;
+use embedded_surfaces::geometry::{Perspective, View};
 use embedded_surfaces::graphics::Material;
 use embedded_surfaces::num::{Angle, I16F16};
-use embedded_surfaces::reference::Audit;
-use embedded_surfaces::render::{Area, Frame, Light, Scene, Style};
+use embedded_surfaces::patch::{BicubicPatch, Surface};
+use embedded_surfaces::reference::{Audit, fixed_half_up};
+use embedded_surfaces::render::{Area, Frame, Gloss, Light, Lines, Scene, Style};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::error::Error;
 use std::path::PathBuf;
@@ -35,9 +36,41 @@ struct Arguments {
     /// Turn about the model's vertical, in degrees
     #[arg(long, default_value_t = 30, allow_negative_numbers = true)]
     spin: i32,
+    /// Perspective: the eye's distance in diagonals of the model's box; without it the view is orthographic
+    #[arg(long, value_name = "DIAGONALS")]
+    perspective: Option<f64>,
+    /// How the patches are drawn
+    #[arg(long, value_enum, default_value_t = Look::Shaded)]
+    style: Look,
     /// Where the picture goes
     #[arg(short, long, default_value = "teapot.png")]
     output: PathBuf,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Look {
+    Shaded,
+    Glossy,
+    Flat,
+    Depth,
+    Wire,
+    Net,
+    Normals,
+}
+
+impl From<Look> for Style {
+    fn from(look: Look) -> Self {
+        let lines = Lines::every(6).without_hidden();
+        match look {
+            Look::Shaded => Self::Shaded,
+            Look::Glossy => Self::Glossy(Gloss::new(110, 24)),
+            Look::Flat => Self::Flat,
+            Look::Depth => Self::DepthCued { near: 255, far: 60 },
+            Look::Wire => Self::Wire(lines),
+            Look::Net => Self::Net { hidden: false },
+            Look::Normals => Self::Normals { lines, length: 10 },
+        }
+    }
 }
 
 const COLOUR: Rgb888 = Rgb888::new(236, 196, 140);
@@ -49,12 +82,33 @@ fn main() -> Result<(), Box<dyn Error>> {
     let view = View { tilt: Angle::from_degrees(arguments.tilt), spin: Angle::from_degrees(arguments.spin) };
     let to_screen = view.fit(teapot::vertices(), width, height, I16F16::from_num(0.92))?;
     let patches = teapot::patches(&to_screen)?;
-    let area = Area { x: 0, y: 0, width, height };
+    match arguments.perspective {
+        None => draw(&arguments, &patches),
+        Some(diagonals) => {
+            let eye = eye(&patches, (width, height), diagonals)?;
+            let seen = patches.iter().map(|patch| patch.perspective(&eye)).collect::<Result<Vec<_>, _>>()?;
+            draw(&arguments, &seen)
+        }
+    }
+}
 
-    // What firmware does: pull a band, send it away.
+/// The eye above the middle of the screen, so many diagonals of the model's box away.
+fn eye(patches: &[BicubicPatch], (width, height): (u32, u32), diagonals: f64) -> Result<Perspective, Box<dyn Error>> {
+    let bounds = patches.iter().map(BicubicPatch::bounds).reduce(|a, b| a.union(&b)).ok_or("no patches")?;
+    let (low, high) = (bounds.min.to_array(), bounds.max.to_array());
+    let diagonal = (0..3).map(|c| (high[c] - low[c]).to_num::<f64>().powi(2)).sum::<f64>().sqrt();
+    let fixed = |c: f64| fixed_half_up(c).ok_or("the eye is too far away");
+    let (x, y) = (f64::from(width) / 2.0, f64::from(height) / 2.0);
+    Ok(Perspective { centre_x: fixed(x)?, centre_y: fixed(y)?, distance: fixed(diagonals * diagonal)? })
+}
+
+/// What firmware does: pull a band, send it away. Then count what was hit and missed.
+fn draw<S: Surface>(arguments: &Arguments, patches: &[S]) -> Result<(), Box<dyn Error>> {
+    let (width, height) = (arguments.size[0], arguments.size[1]);
+    let area = Area { x: 0, y: 0, width, height };
     let mut display = SimulatorDisplay::<Rgb888>::with_default_color(Size::new(width, height), BACKGROUND);
     let paint = Material { colour: COLOUR };
-    let scene = Scene::new(&patches, Light::default(), Style::Shaded)?;
+    let scene = Scene::new(patches, Light::default(), arguments.style.into())?;
     let mut frame = Frame::new(scene, &paint, BACKGROUND, area, arguments.band)?;
     let (mut colour, mut depth) = (vec![BACKGROUND; frame.band_pixels()], vec![0; frame.band_pixels()]);
     let progress = bar(u64::from(height), "rows drawn");
@@ -68,7 +122,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let (progress, mut audit) = (bar(patches.len() as u64, "patches checked"), Audit::default());
     for index in 0..patches.len() {
-        audit.add(&patches, index, area)?;
+        audit.add(patches, index, area)?;
         progress.inc(1);
     }
     progress.finish_and_clear();

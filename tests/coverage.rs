@@ -7,10 +7,11 @@ mod scene;
 
 use common::{SEED_P, SEED_Q};
 use embedded_surfaces::forward::{Lattice, Steps};
-use embedded_surfaces::geometry::{Affine, Point3};
-use embedded_surfaces::num::I32F32;
+use embedded_surfaces::geometry::{Affine, Perspective, Point3};
+use embedded_surfaces::num::{I16F16, I32F32};
 use embedded_surfaces::patch::{
-    BicubicPatch, BilinearPatch, CubicTriangle, Surface, SurfaceNet, TensorNet, TriangleNet,
+    BicubicPatch, BilinearPatch, CubicTriangle, RationalTensorNet, RationalTriangleNet, Surface, SurfaceNet, TensorNet,
+    TriangleNet,
 };
 use embedded_surfaces::reference::{Audit, Coverage, fine_mesh};
 use embedded_surfaces::render::Area;
@@ -148,5 +149,51 @@ fn seams_need_no_stitching() {
             truth.add(patch.surface(), (256, 256));
         }
         assert_eq!(truth.missed(&hits), []);
+    }
+}
+
+#[test]
+fn random_rational_patches() {
+    let (mut random, mut covered) = (Random(1992), 0);
+    let area = Area { x: -60, y: -60, width: 220, height: 220 };
+    for index in 0..60 {
+        let (m, h, size) = (1 + index % 4, 1 + index / 4 % 3, 20.0 + 50.0 * random.unit());
+        let mut points = Vec::new();
+        let mut weights = Vec::new();
+        let triangle = index % 2 == 0;
+        for i in (0..=m).rev() {
+            for j in (0..=if triangle { m - i } else { h }).rev() {
+                points.push(random.near(
+                    i as f64 / m as f64,
+                    j as f64 / if triangle { m } else { h } as f64,
+                    size,
+                    0.6,
+                ));
+                weights.push(I16F16::from_num(0.25 + 3.75 * random.unit()));
+            }
+        }
+        let net = if triangle {
+            let net = TriangleNet::new(m, &points).unwrap();
+            SurfaceNet::RationalTriangle(RationalTriangleNet::new(net, &weights).unwrap())
+        } else {
+            let net = TensorNet::new((m, h), &points).unwrap();
+            SurfaceNet::RationalTensor(RationalTensorNet::new(net, &weights).unwrap())
+        };
+        covered += nothing_missed(&[net], area, 0).covered;
+    }
+    assert!(covered > 15_000, "{covered}");
+}
+
+#[test]
+fn the_teapot_in_perspective_in_six_views() {
+    for view in VIEWS {
+        let patches = Look::at(view, (320, 240)).see(&teapot());
+        let eye = Perspective {
+            centre_x: I16F16::from_num(160),
+            centre_y: I16F16::from_num(120),
+            distance: I16F16::from_num(900),
+        };
+        let seen: Vec<_> = patches.iter().map(|p| p.perspective(&eye).unwrap()).collect();
+        nothing_missed(&seen, SCREEN, 25_000);
     }
 }

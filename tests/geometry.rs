@@ -350,15 +350,15 @@ proptest! {
         let triangle = QuinticTriangle::try_from(*points.first_chunk().unwrap()).unwrap();
         let [basis, ..] = triangle_basis(5, at);
         let value = |axis| basis.value(triangle.points(), None, axis);
-        check_seen(&eye, triangle.perspective(&eye).unwrap().eval(at), [0, 1, 2].map(value));
+        check_seen(&eye, triangle.perspective(&eye).unwrap().net().eval(at), [0, 1, 2].map(value));
         let tensor = Tensor::<4, 5>::try_from(points.as_chunks::<5>().0.first_chunk().copied().unwrap()).unwrap();
         let [basis, ..] = tensor_basis((3, 4), r, s);
         let value = |axis| basis.value(tensor.points().as_flattened(), None, axis);
-        check_seen(&eye, tensor.perspective(&eye).unwrap().eval(r, s), [0, 1, 2].map(value));
+        check_seen(&eye, tensor.perspective(&eye).unwrap().net().eval(r, s), [0, 1, 2].map(value));
         let curve = Curve::<9>::try_from(*points.first_chunk().unwrap()).unwrap();
         let [basis, ..] = curve_basis(8, r);
         let value = |axis| basis.value(curve.points(), None, axis);
-        check_seen(&eye, curve.perspective(&eye).unwrap().eval(r), [0, 1, 2].map(value));
+        check_seen(&eye, curve.perspective(&eye).unwrap().net().eval(r), [0, 1, 2].map(value));
     }
 }
 
@@ -372,7 +372,7 @@ fn a_net_behind_the_eye_has_no_perspective() {
     let flat = Curve::<2>::from_ints([[3, 4, 0], [9, -4, 0]]).unwrap();
     let seen = flat.perspective(&eye).unwrap();
     assert_eq!(seen.net().points(), flat.points(), "the plane z = 0 keeps its scale");
-    assert_eq!(seen.eval(Parameter::HALF), Point3::from_ints(6, 0, 0));
-    let corner = patch.perspective(&eye).unwrap().eval(Barycentric::new(1, 0, 0).unwrap());
+    assert_eq!(seen.net().eval(Parameter::HALF), Point3::from_ints(6, 0, 0));
+    let corner = patch.perspective(&eye).unwrap().net().eval(Barycentric::new(1, 0, 0).unwrap());
     assert_eq!(Ok(corner), eye.project(&patch.points()[0]).map(|(p, _)| p));
 }

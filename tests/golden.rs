@@ -89,6 +89,18 @@ fn views_map_the_model_to_the_screen() {
 }
 
 #[test]
+fn perspective_views_are_rational_and_keep_the_plane_of_the_screen() {
+    let mut case = json!({"patch": square(), "size": [40, 40], "style": "flat"});
+    case["view"] = json!({"tilt": 0, "spin": 0, "fit": 0.5, "perspective": 2});
+    // The square lies in the plane z = 0, which keeps its scale.
+    let answer_flat = answer(&golden("render", &file("eye", &case.to_string()), &[]));
+    assert_eq!((&answer_flat["pixels"], &answer_flat["missed"]), (&json!(21 * 21), &json!(0)));
+    case["view"] = json!({"tilt": -90, "spin": 40, "fit": 0.5, "perspective": 0.1});
+    let error = answer(&golden("render", &file("behind", &case.to_string()), &[]));
+    assert_eq!(error["status"], "BehindEye", "{error}");
+}
+
+#[test]
 fn several_cases_give_several_results_and_pictures() {
     let case =
         json!({"ok_cases": [{"name": "a", "patch": square()}], "error_cases": [{"name": "b", "patch": square()}]});
@@ -96,6 +108,11 @@ fn several_cases_give_several_results_and_pictures() {
     let results = answer(&golden("render", &file("several", &case.to_string()), &["-o", png.to_str().unwrap()]));
     assert_eq!(results["results"][1]["name"], "b");
     assert!(png.with_file_name("several-0.png").exists() && png.with_file_name("several-1.png").exists());
+}
+
+/// A list of one flat triangle with these weights.
+fn flat(weights: Value) -> String {
+    json!([{"kind": "tri", "degree": 1, "ctrl": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "weights": weights}]).to_string()
 }
 
 /// A case with one member replaced.
@@ -139,12 +156,11 @@ fn what_is_wrong_exits_with_2_and_names_the_field() {
         ("render", with("size", json!([0, 4])), "size[0]"),
         ("render", with("size", json!(4)), "size"),
         ("render", with("band", json!(0)), "band"),
-        ("render", with("style", json!("wire")), "style"),
-        ("render", with("style", json!("net")), "style"),
+        ("render", with("style", json!("cubist")), "style"),
         ("render", with("fill", json!({"grid": 1})), "fill"),
         ("render", with("color", json!([1, 2, 256])), "color[2]"),
         ("render", with("background", json!([1, 2])), "background"),
-        ("render", with("view", json!({"perspective": 2})), "view.perspective"),
+        ("render", with("view", json!({"perspective": 0})), "view.perspective"),
         ("render", with("view", json!({"matrix": [[1, 2, 3, 4]]})), "view.matrix"),
         ("render", with("view", json!({"tilt": "up"})), "view.tilt"),
         ("render", with("view", json!({"fit": 0})), "view.fit"),
@@ -156,7 +172,12 @@ fn what_is_wrong_exits_with_2_and_names_the_field() {
         ),
         (
             "render",
-            json!({"patches": [{"kind": "tri", "degree": 1, "ctrl": [], "weights": []}]}).to_string(),
+            with("patches", json!([])).replace("\"patch\"", "\"unused\"").replace("[]", &flat(json!([1, 0, 1]))),
+            "patches[0].weights[1]",
+        ),
+        (
+            "render",
+            with("patches", json!([])).replace("\"patch\"", "\"unused\"").replace("[]", &flat(json!([1, 1]))),
             "patches[0].weights",
         ),
     ];

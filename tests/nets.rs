@@ -34,7 +34,7 @@ fn nets_can_be_constants() {
     assert_eq!(SQUARE.points()[1][0], Point3::from_ints(9, 0, 0));
     assert_eq!(SEED.net().degree(), 3);
     assert_eq!(LIMITS.points()[0].x, 1 << 26);
-    assert_eq!(QUARTER.eval(Parameter::HALF), Point3::from_ints(60, 80, 0));
+    assert_eq!(QUARTER.net().eval(Parameter::HALF), Point3::from_ints(60, 80, 0));
 }
 
 /// Every way to make a net out of this many equal points but one.
@@ -157,11 +157,11 @@ fn weights_must_be_positive() {
         assert_eq!(RationalTriangle::new(SEED, ten), Err(refused));
     }
     let curve = RationalCurve::new(ARC, weights(5)).unwrap();
-    assert_eq!((curve.net(), curve.weights()), (ARC.net(), &weights(5)));
+    assert_eq!((curve.net().control_net(), curve.weights()), (ARC.net(), &weights(5)));
     let patch = RationalTensor::new(SQUARE, square(weights(5))).unwrap();
-    assert_eq!((patch.net(), patch.weights()), (SQUARE.net(), &square(weights(5))));
+    assert_eq!((patch.net().control_net(), patch.weights()), (SQUARE.net(), &square(weights(5))));
     let patch = RationalTriangle::new(SEED, [I16F16::MAX; 10]).unwrap();
-    assert_eq!((patch.net(), patch.weights()), (SEED.net(), &[I16F16::MAX; 10]));
+    assert_eq!((patch.net().control_net(), patch.weights()), (SEED.net(), &[I16F16::MAX; 10]));
 }
 
 /// Text of errors: lower case, no full stop, and the values that were wrong.
@@ -223,15 +223,15 @@ fn check_bounds<C: Coord>(points: &[Point3<C>], weights: &[I16F16], (r, s): (Par
     let owned = Tensor::<4, 4, C>::try_from(points.as_chunks::<4>().0.first_chunk().copied().unwrap()).unwrap();
     assert_eq!(owned.bounds(), SurfaceNet::Tensor(tensor).bounds());
     let rational = RationalTensor::new(owned, weights.as_chunks::<4>().0.first_chunk().copied().unwrap()).unwrap();
-    assert!(inside(&owned.bounds(), rational.eval(r, s)));
+    assert!(inside(&owned.bounds(), rational.net().eval(r, s)));
     let triangle = TriangleNet::new(5, &points[..21]).unwrap();
     assert!(inside(&SurfaceNet::Triangle(triangle).bounds(), triangle.eval(at)));
     let owned = Triangle::<5, 21, C>::try_from(*points.first_chunk().unwrap()).unwrap();
     let rational = RationalTriangle::new(owned, *weights.first_chunk().unwrap()).unwrap();
-    assert!(inside(&owned.bounds(), rational.eval(at)));
+    assert!(inside(&owned.bounds(), rational.net().eval(at)));
     let curve = Curve::<9, C>::try_from(*points.first_chunk().unwrap()).unwrap();
     assert!(inside(&curve.bounds(), curve.net().eval(r)));
-    assert!(inside(&curve.bounds(), RationalCurve::new(curve, *weights.first_chunk().unwrap()).unwrap().eval(s)));
+    assert!(inside(&curve.bounds(), RationalCurve::new(curve, *weights.first_chunk().unwrap()).unwrap().net().eval(s)));
 }
 
 proptest! {

@@ -27,7 +27,7 @@ fn array<T: Copy + core::fmt::Debug, const K: usize>(values: &[T]) -> [T; K] {
 fn rational_curve<const K: usize, C: Coord>(points: &[Point3<C>], weights: &[I16F16], t: Parameter) -> Jet<C> {
     let net = Curve::<K, C>::try_from(array(points)).unwrap();
     let curve = RationalCurve::new(net, array(weights)).unwrap();
-    (curve.eval(t), curve.derivative(t).map(|d| vec![d]))
+    (curve.net().eval(t), curve.net().derivative(t).map(|d| vec![d]))
 }
 
 fn rational_triangle<const N: usize, const LEN: usize, C: Coord>(
@@ -37,7 +37,7 @@ fn rational_triangle<const N: usize, const LEN: usize, C: Coord>(
 ) -> Jet<C> {
     let net = Triangle::<N, LEN, C>::try_from(array(points)).unwrap();
     let patch = RationalTriangle::new(net, array(weights)).unwrap();
-    (patch.eval(at), patch.partials(at).map(Vec::from))
+    (patch.net().eval(at), patch.net().partials(at).map(Vec::from))
 }
 
 fn rational_tensor<const M: usize, const H: usize, C: Coord>(
@@ -48,7 +48,7 @@ fn rational_tensor<const M: usize, const H: usize, C: Coord>(
     let rows = points.as_chunks::<H>().0;
     let net = Tensor::<M, H, C>::try_from(array(rows)).unwrap();
     let patch = RationalTensor::new(net, array(weights.as_chunks::<H>().0)).unwrap();
-    (patch.eval(r, s), patch.partials(r, s).map(Vec::from))
+    (patch.net().eval(r, s), patch.net().partials(r, s).map(Vec::from))
 }
 
 /// Calls `$f` with the constants that belong to a degree known only at run time.
@@ -357,6 +357,6 @@ fn halves_round_up_and_a_derivative_that_does_not_fit_is_none() {
     assert_eq!(line.net().eval(Parameter::HALF), Point3::from_bits(0, 1, 0));
     let net = QuadraticCurve::from_ints([[0, 0, 0], [32767, 0, 0], [0, 0, 0]]).unwrap();
     let steep = RationalCurve::new(net, [1, i32::MAX, 1].map(I16F16::from_bits)).unwrap();
-    assert_eq!(steep.derivative(Parameter::ZERO), None); // 2 · 32767 · 2^31 units
-    assert_eq!(steep.derivative(Parameter::HALF).map(|d| d.x), Some(I32F32::ZERO));
+    assert_eq!(steep.net().derivative(Parameter::ZERO), None); // 2 · 32767 · 2^31 units
+    assert_eq!(steep.net().derivative(Parameter::HALF).map(|d| d.x), Some(I32F32::ZERO));
 }

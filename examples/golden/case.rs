@@ -3,7 +3,7 @@
 use crate::field::{Field, Malformed};
 use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::num::{I16F16, I32F32};
-use embedded_surfaces::patch::{NetError, SurfaceNet, TensorNet, TriangleNet};
+use embedded_surfaces::patch::{NetError, RationalTensorNet, RationalTriangleNet, SurfaceNet, TensorNet, TriangleNet};
 use embedded_surfaces::reference::fixed_half_up;
 
 /// The cases of a file that lists several: `cases`, or `ok_cases` then `error_cases`, or the map `meshes`.
@@ -30,6 +30,8 @@ pub(crate) struct Patch<'a> {
     kind: Kind,
     points: Vec<[f64; 3]>,
     fields: Vec<Field<'a>>,
+    /// One positive weight a point, in `I16F16`, for a rational patch.
+    weights: Option<Vec<I16F16>>,
 }
 
 #[derive(Clone, Copy)]
@@ -57,6 +59,24 @@ fn degree(field: &Field<'_>) -> Result<usize, Malformed> {
     Ok(field.whole(1..=8)? as usize)
 }
 
+/// The items of a list of the patch's shape, in storage order: nested rows for a tensor.
+fn shaped<'a>(list: &Field<'a>, kind: Kind) -> Result<Vec<Field<'a>>, Malformed> {
+    let items = match kind {
+        Kind::Triangle(_) => list.items()?,
+        Kind::Tensor(m, h) => grid(list, (m, h))?,
+    };
+    if items.len() != kind.len() {
+        return Err(list.malformed(&format!("has {} points instead of {}", items.len(), kind.len())));
+    }
+    Ok(items)
+}
+
+fn weight(field: &Field<'_>) -> Result<I16F16, Malformed> {
+    let value = field.number()?;
+    let fixed = fixed_half_up(value).filter(|w| *w > 0);
+    fixed.ok_or_else(|| field.malformed(&format!("weight {value} is not in 2^-16 ..= 32767")))
+}
+
 /// The tensor net's rows, one after the other.
 fn grid<'a>(ctrl: &Field<'a>, (m, h): (usize, usize)) -> Result<Vec<Field<'a>>, Malformed> {
     let rows = ctrl.items()?;
@@ -75,30 +95,21 @@ fn grid<'a>(ctrl: &Field<'a>, (m, h): (usize, usize)) -> Result<Vec<Field<'a>>, 
 }
 
 impl<'a> Patch<'a> {
-    /// Reads `{"kind", "degree", "ctrl"}`.
+    /// Reads `{"kind", "degree", "ctrl", "weights"?}`.
     pub(crate) fn read(field: &Field<'a>) -> Result<Self, Malformed> {
-        field.object()?;
-        if let Some(weights) = field.get("weights") {
-            return Err(weights.malformed("rational patches are not supported"));
-        }
-        let (kind, ctrl) = (field.need("kind")?, field.need("ctrl")?);
-        let (kind, fields) = match kind.text()? {
-            "tri" => {
-                let n = degree(&field.need("degree")?)?;
-                (Kind::Triangle(n), ctrl.items()?)
-            }
+        let (kind, degrees) = (field.need("kind")?, field.need("degree")?);
+        let kind = match kind.text()? {
+            "tri" => Kind::Triangle(degree(&degrees)?),
             "tensor" => {
-                let [m, h] = field.need("degree")?.fixed()?;
-                let degrees = (degree(&m)?, degree(&h)?);
-                (Kind::Tensor(degrees.0, degrees.1), grid(&ctrl, degrees)?)
+                let [m, h] = degrees.fixed()?;
+                Kind::Tensor(degree(&m)?, degree(&h)?)
             }
             other => return Err(kind.malformed(&format!("{other:?} is neither \"tri\" nor \"tensor\""))),
         };
-        if fields.len() != kind.len() {
-            return Err(ctrl.malformed(&format!("has {} points instead of {}", fields.len(), kind.len())));
-        }
+        let fields = shaped(&field.need("ctrl")?, kind)?;
+        let weights = field.get("weights").map(|list| shaped(&list, kind)?.iter().map(weight).collect()).transpose()?;
         let points = fields.iter().map(point).collect::<Result<_, _>>()?;
-        Ok(Self { kind, points, fields })
+        Ok(Self { kind, points, fields, weights })
     }
 
     /// Reads the patches of a case: `patch`, `patches`, or bicubic `patches` of indices into `vertices`.
@@ -122,7 +133,7 @@ impl<'a> Patch<'a> {
             fields.push(vertex.clone());
         }
         let points = fields.iter().map(point).collect::<Result<_, _>>()?;
-        Ok(Self { kind: Kind::Tensor(3, 3), points, fields })
+        Ok(Self { kind: Kind::Tensor(3, 3), points, fields, weights: None })
     }
 
     /// The control points in model coordinates.
@@ -145,12 +156,27 @@ impl<'a> Patch<'a> {
         Ok(out)
     }
 
-    /// The net of this patch through other points.
-    pub(crate) fn net<'p>(&self, points: &'p [Point3<I16F16>]) -> Result<SurfaceNet<'p>, NetError> {
-        Ok(match self.kind {
-            Kind::Triangle(n) => SurfaceNet::Triangle(TriangleNet::new(n, points)?),
-            Kind::Tensor(m, h) => SurfaceNet::Tensor(TensorNet::new((m, h), points)?),
+    /// The net of this patch through other points, with these weights if any.
+    pub(crate) fn net<'p>(
+        &self,
+        points: &'p [Point3<I16F16>],
+        weights: Option<&'p [I16F16]>,
+    ) -> Result<SurfaceNet<'p>, NetError> {
+        Ok(match (self.kind, weights) {
+            (Kind::Triangle(n), None) => SurfaceNet::Triangle(TriangleNet::new(n, points)?),
+            (Kind::Tensor(m, h), None) => SurfaceNet::Tensor(TensorNet::new((m, h), points)?),
+            (Kind::Triangle(n), Some(weights)) => {
+                SurfaceNet::RationalTriangle(RationalTriangleNet::new(TriangleNet::new(n, points)?, weights)?)
+            }
+            (Kind::Tensor(m, h), Some(weights)) => {
+                SurfaceNet::RationalTensor(RationalTensorNet::new(TensorNet::new((m, h), points)?, weights)?)
+            }
         })
+    }
+
+    /// The weights, for a rational patch.
+    pub(crate) fn weights(&self) -> Option<&[I16F16]> {
+        self.weights.as_deref()
     }
 
     /// Whether the patch is triangular.

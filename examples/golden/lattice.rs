@@ -31,7 +31,7 @@ pub(crate) fn run(case: &Field<'_>) -> Answer {
     let patch_field = case.need("patch")?;
     let patch = Patch::read(&patch_field)?;
     let points = patch.fixed_points()?;
-    let net = patch.net(&points).map_err(|error| patch_field.malformed(&error.to_string()))?;
+    let net = patch.net(&points, patch.weights()).map_err(|error| patch_field.malformed(&error.to_string()))?;
     let steps = steps(&case.need("steps")?, &patch, net)?;
     let lattice = match Lattice::new(net, steps) {
         Ok(lattice) => lattice,

@@ -11,8 +11,8 @@ use embedded_surfaces::geometry::{Axis, GeometryError, Point3};
 use embedded_surfaces::graphics::Material;
 use embedded_surfaces::num::I16F16;
 use embedded_surfaces::patch::SurfaceNet;
-use embedded_surfaces::reference::Audit;
-use embedded_surfaces::render::{Area, Frame, Light, RenderError, Scene, Style};
+use embedded_surfaces::reference::{Audit, fixed_half_up};
+use embedded_surfaces::render::{Area, Frame, Light, Lines, RenderError, Scene, Style};
 use serde_json::Map;
 use std::path::PathBuf;
 
@@ -47,7 +47,9 @@ impl Settings {
             Some(style) => match style.text()? {
                 "shaded" => Style::Shaded,
                 "flat" => Style::Flat,
-                other => return Err(style.malformed(&format!("{other:?} is neither \"shaded\" nor \"flat\""))),
+                "wire" => Style::Wire(Lines::every(8).without_hidden()),
+                "net" => Style::Net { hidden: false },
+                other => return Err(style.malformed(&format!("{other:?} is none of shaded, flat, wire and net"))),
             },
         };
         Ok(Self {
@@ -60,38 +62,61 @@ impl Settings {
     }
 }
 
-/// The control points of all patches on the screen, or the typed error of the first out of range.
+/// The control points and weights of a patch on the screen.
+struct Seen {
+    points: Vec<Point3<I16F16>>,
+    weights: Option<Vec<I16F16>>,
+}
+
+/// One patch seen by a view: rounded once, half up.
+fn see(patch: &Patch<'_>, view: &View) -> Result<Seen, GeometryError> {
+    let rational = view.is_perspective() || patch.weights().is_some();
+    let mut seen = Seen { points: Vec::new(), weights: rational.then(Vec::new) };
+    for (index, p) in patch.points().iter().enumerate() {
+        let (image, perspective) = view.apply(*p)?;
+        let out_of_range = |c: f64, axis| GeometryError::OutOfRange { axis, units: Patch::units(c), limit: 32767 };
+        let farthest = || {
+            let far = Axis::ALL.into_iter().zip(image).max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+            far.map_or(out_of_range(0.0, Axis::X), |(axis, c)| out_of_range(c, axis))
+        };
+        seen.points.push(Patch::fix(image).ok_or_else(farthest)?);
+        if let Some(weights) = &mut seen.weights {
+            let own = patch.weights().and_then(|w| w.get(index)).map_or(1.0, |w| w.to_num::<f64>());
+            let weight = fixed_half_up(own * perspective).filter(|w| *w > 0);
+            weights.push(weight.ok_or_else(|| out_of_range(own * perspective, Axis::Z))?);
+        }
+    }
+    Ok(seen)
+}
+
+/// All patches on the screen, or the typed error of the first that cannot be seen.
 fn on_screen(
     case: &Field<'_>,
     patches: &[Patch<'_>],
     area: Area,
-) -> Result<Result<Vec<Vec<Point3<I16F16>>>, GeometryError>, Malformed> {
+) -> Result<Result<Vec<Seen>, GeometryError>, Malformed> {
     let model: Vec<[f64; 3]> = patches.iter().flat_map(Patch::points).copied().collect();
     let view = View::read(case, (area.width, area.height), &model)?;
-    if matches!(view, View::Screen) {
-        return patches.iter().map(Patch::fixed_points).collect::<Result<_, _>>().map(Ok);
+    if view.is_screen() {
+        // A number out of range is the file's fault then, and named.
+        for patch in patches {
+            patch.fixed_points()?;
+        }
     }
-    let map = |p: &[f64; 3]| {
-        let image = view.apply(*p);
-        Patch::fix(image).ok_or_else(|| {
-            let far = Axis::ALL.into_iter().zip(image).max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-            let (axis, c) = far.unwrap_or((Axis::X, 0.0));
-            GeometryError::OutOfRange { axis, units: Patch::units(c), limit: 32767 }
-        })
-    };
-    Ok(patches.iter().map(|patch| patch.points().iter().map(map).collect()).collect())
+    Ok(patches.iter().map(|patch| see(patch, &view)).collect())
 }
 
 pub(crate) fn run(case: &Field<'_>, output: Option<PathBuf>) -> Answer {
     let settings = Settings::read(case)?;
     let patches = Patch::read_all(case)?;
-    let points = match on_screen(case, &patches, settings.area)? {
-        Ok(points) => points,
+    let seen = match on_screen(case, &patches, settings.area)? {
+        Ok(seen) => seen,
         Err(error) => return Ok(typed_error(&error)),
     };
     let mut nets = Vec::new();
-    for (patch, points) in patches.iter().zip(&points) {
-        nets.push(patch.net(points).map_err(|error| case.malformed(&error.to_string()))?);
+    for (patch, seen) in patches.iter().zip(&seen) {
+        let net = patch.net(&seen.points, seen.weights.as_deref());
+        nets.push(net.map_err(|error| case.malformed(&error.to_string()))?);
     }
     match picture(&settings, &nets) {
         Ok((display, points, audit)) => {

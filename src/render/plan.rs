@@ -67,10 +67,7 @@ fn run_quotient<W: Word, V: Visit, const R: usize>(plan: &Plan<'_>, visitor: V) 
 
 /// The hole-free lattices of a patch: one, or a coarser one and its cells' centres where that takes fewer points and
 /// no wider accumulator.
-pub(super) fn fill_plans<'a>(
-    net: SurfaceNet<'a>,
-    style: Style,
-) -> Result<(Plan<'a>, Option<Plan<'a>>), LatticeError> {
+pub(super) fn fill_plans<'a>(net: SurfaceNet<'a>, style: Style) -> Result<(Plan<'a>, Option<Plan<'a>>), LatticeError> {
     let normals = style.needs_normals();
     let form = |steps: Steps| Form::surface(net, (steps.r(), steps.s()));
     let sampling = Sampling::cheapest(net);

@@ -109,9 +109,9 @@ impl Style {
     /// Whether a style draws lines, and whether patches hide them.
     pub(super) const fn lines(self) -> Option<bool> {
         match self {
-            Self::Wire(Lines { hidden, .. }) | Self::Net { hidden } | Self::Normals { lines: Lines { hidden, .. }, .. } => {
-                Some(hidden)
-            }
+            Self::Wire(Lines { hidden, .. })
+            | Self::Net { hidden }
+            | Self::Normals { lines: Lines { hidden, .. }, .. } => Some(hidden),
             _ => None,
         }
     }

@@ -48,10 +48,8 @@ fn worst(net: SurfaceNet<'_>, light: Light) -> ([f64; 2], usize) {
         let (u, v) = at(*i, *j);
         let normal = reference::unit_normal(net, u, v).unwrap();
         let gloss = (f64::from(GLOSS.specular()), GLOSS.exponent());
-        let exact = [
-            reference::lambert(normal, direction, ambient),
-            reference::blinn_phong(normal, direction, ambient, gloss),
-        ];
+        let exact =
+            [reference::lambert(normal, direction, ambient), reference::blinn_phong(normal, direction, ambient, gloss)];
         for k in 0..2 {
             worst.0[k] = worst.0[k].max((f64::from(ours[k]) - exact[k]).abs());
         }

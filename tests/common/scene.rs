@@ -1,4 +1,5 @@
 //! Scenes of the rendering tests: models seen by the views of the tests, in `f64`, rounded once.
+#![allow(dead_code, reason = "each test binary uses a part")]
 
 use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::num::I16F16;
@@ -80,7 +81,7 @@ impl Random {
     /// Uniform in 0 ..= 1.
     pub(crate) fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as f64 / f64::from(1 << 31)
+        (self.0 >> 33) as f64 / f64::from(1_u32 << 31)
     }
 
     /// A point near (x, y) of a square of `size` pixels, each coordinate moved by up to `jitter` of the size.
