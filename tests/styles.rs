@@ -52,7 +52,7 @@ fn bands_do_not_show_in_any_style() {
     let seen: Vec<_> = patches.iter().map(|p| p.perspective(&eye).unwrap()).collect();
     for style in styles {
         let whole = picture(&patches, style, SCREEN, 240);
-        assert!(whole.iter().flatten().count() > 3000, "{style:?}");
+        assert!(whole.iter().flatten().count() > 1000, "{style:?}");
         let projected = picture(&seen, style, SCREEN, 240);
         for rows in [1, 7, 16] {
             assert!(picture(&patches, style, SCREEN, rows) == whole, "{style:?} in bands of {rows} rows");

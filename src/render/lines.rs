@@ -86,13 +86,13 @@ impl<'a, P: Paint> LineDrawing<'a, '_, P> {
         };
         // A triangle is read by (j, k): then the same three differences are its edges.
         let last = |i: usize| if net.is_triangle() { m - i } else { h };
+        let families = if net.is_triangle() { 3 } else { 2 };
         for i in 0..=m {
             for j in 0..=last(i) {
-                let ends = [(i + 1, j), (i, j + 1), (i + 1, j.wrapping_sub(1))];
-                let families = if net.is_triangle() { 3 } else { 2 };
+                let ends = [(i + 1, Some(j)), (i, Some(j + 1)), (i + 1, j.checked_sub(1))];
                 for (a, b) in ends.into_iter().take(families) {
-                    let inside = a <= m && b != usize::MAX && b <= last(a.min(m));
-                    if let (true, Some(p), Some(q)) = (inside, at(i, j), at(a, b)) {
+                    let Some(b) = b.filter(|b| a <= m && *b <= last(a)) else { continue };
+                    if let (Some(p), Some(q)) = (at(i, j), at(a, b)) {
                         self.segment([p, q]);
                     }
                 }
