@@ -110,8 +110,9 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
             let table = &mut self.table[axis];
             self.kernel.advance(&mut self.start.0[axis], &mut self.start.1[axis], table[1][0]);
             for b in 0..R - 1 {
-                for a in 0..R {
-                    table[b][a] = table[b][a].wrapping_plus(table[b + 1][a]);
+                let next = table[b + 1];
+                for (entry, next) in table[b].iter_mut().zip(next) {
+                    *entry = entry.wrapping_plus(next);
                 }
             }
         }
