@@ -136,6 +136,7 @@ fn modules() -> BTreeSet<String> {
 }
 
 #[track_caller]
+#[allow(clippy::needless_pass_by_value, reason = "it is the end of every list")]
 fn assert_none(offences: Vec<String>) {
     assert!(offences.is_empty(), "\n{}", offences.join("\n"));
 }

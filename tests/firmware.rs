@@ -39,31 +39,37 @@ fn riscv32imc() {
     check("riscv32imc-unknown-none-elf");
 }
 
-/// Builds the library alone and the firmware, reads its symbols, runs it and compares what it prints.
+/// The library alone, then every firmware with what it prints.
 fn check(target: &str) {
     if !target_is_installed(target) {
         return skip(target, &format!("the Rust target (rustup target add {target})"));
     }
     cargo_build(target, &["--lib", "--no-default-features"]);
-    let image = cargo_build(target, &["--example", "fw_smoke"]).join("examples/fw_smoke");
+    check_example(target, "fw_smoke", &expected_line());
+}
 
+/// Builds a firmware, reads its symbols, runs it and compares what it prints.
+fn check_example(target: &str, example: &str, expected: &str) {
+    let image = cargo_build(target, &["--example", example]).join("examples").join(example);
     let names = symbols(&std::fs::read(&image).unwrap());
     assert!(names.iter().any(|name| name.contains("embedded_surfaces")), "{target}: the image is stripped");
     let offences: Vec<_> = names.iter().filter_map(|name| Some((offence(name)?, name))).collect();
-    assert!(offences.is_empty(), "{target}: {offences:#?}");
+    assert!(offences.is_empty(), "{example} on {target}: {offences:#?}");
 
-    let runner = runner(&std::fs::read_to_string(Path::new(ROOT).join(".cargo/config.toml")).unwrap(), target);
+    let config = std::fs::read_to_string(Path::new(ROOT).join(".cargo/config.toml")).unwrap();
+    let runner = runner(&config, target);
     if Command::new(&runner[0]).arg("--version").output().is_err() {
         return skip(target, &runner[0]);
     }
-    assert_eq!(run(&runner, &image), expected_line(), "{target}");
+    assert_eq!(run(&runner, &image), expected, "{example} on {target}");
 }
 
 /// Says on the real standard error, which the test harness does not capture, that something is not checked.
 fn skip(target: &str, missing: &str) {
     let required = std::env::var_os("REQUIRE_FIRMWARE").is_some_and(|value| value == "1");
     assert!(!required, "{target}: {missing} is missing, and REQUIRE_FIRMWARE=1");
-    writeln!(std::io::stderr(), "firmware test of {target} skipped: {missing} is missing").unwrap();
+    let message = format!("firmware test of {target} skipped: {missing} is missing\n");
+    std::io::stderr().write_all(message.as_bytes()).unwrap();
 }
 
 fn target_is_installed(target: &str) -> bool {
