@@ -3,19 +3,20 @@
 //! `cargo run --release --example teapot -- --help`
 #![allow(clippy::disallowed_types, clippy::float_arithmetic, reason = "host-side figures")]
 
+#[path = "data/draw.rs"]
+mod draw;
 #[path = "data/teapot.rs"]
 mod teapot;
 
 use clap::Parser;
 use embedded_graphics::pixelcolor::Rgb888;
-use embedded_graphics::prelude::Size;
-use embedded_graphics_simulator::{OutputSettings, SimulatorDisplay};
+use embedded_graphics_simulator::OutputSettings;
 use embedded_surfaces::geometry::{Perspective, View};
 use embedded_surfaces::graphics::Material;
 use embedded_surfaces::num::{Angle, I16F16};
 use embedded_surfaces::patch::{BicubicPatch, Surface};
 use embedded_surfaces::reference::{Audit, fixed_half_up};
-use embedded_surfaces::render::{Area, Frame, Gloss, Light, Lines, Scene, Style};
+use embedded_surfaces::render::{Area, Gloss, Light, Lines, Scene, Style};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::error::Error;
 use std::path::PathBuf;
@@ -83,11 +84,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let to_screen = view.fit(teapot::vertices(), width, height, I16F16::from_num(0.92))?;
     let patches = teapot::patches(&to_screen)?;
     match arguments.perspective {
-        None => draw(&arguments, &patches),
+        None => run(&arguments, &patches),
         Some(diagonals) => {
             let eye = eye(&patches, (width, height), diagonals)?;
             let seen = patches.iter().map(|patch| patch.perspective(&eye)).collect::<Result<Vec<_>, _>>()?;
-            draw(&arguments, &seen)
+            run(&arguments, &seen)
         }
     }
 }
@@ -102,22 +103,18 @@ fn eye(patches: &[BicubicPatch], (width, height): (u32, u32), diagonals: f64) ->
     Ok(Perspective { centre_x: fixed(x)?, centre_y: fixed(y)?, distance: fixed(diagonals * diagonal)? })
 }
 
-/// What firmware does: pull a band, send it away. Then count what was hit and missed.
-fn draw<S: Surface>(arguments: &Arguments, patches: &[S]) -> Result<(), Box<dyn Error>> {
+/// Draws the picture, then counts what was hit and missed.
+fn run<S: Surface>(arguments: &Arguments, patches: &[S]) -> Result<(), Box<dyn Error>> {
     let (width, height) = (arguments.size[0], arguments.size[1]);
     let area = Area { x: 0, y: 0, width, height };
-    let mut display = SimulatorDisplay::<Rgb888>::with_default_color(Size::new(width, height), BACKGROUND);
-    let paint = Material { colour: COLOUR };
+    let mut display = draw::blank(area, BACKGROUND);
     let scene = Scene::new(patches, Light::default(), arguments.style.into())?;
-    let mut frame = Frame::new(scene, &paint, BACKGROUND, area, arguments.band)?;
-    let (mut colour, mut depth) = (vec![BACKGROUND; frame.band_pixels()], vec![0; frame.band_pixels()]);
     let progress = bar(u64::from(height), "rows drawn");
-    while let Some(band) = frame.next_band(&mut colour, &mut depth)? {
-        band.draw(&mut display)?;
-        progress.inc(band.area().height.into());
-    }
+    let paint = (&Material { colour: COLOUR }, BACKGROUND);
+    let statistics =
+        draw::in_bands(&mut display, scene, paint, (area, arguments.band), |rows| progress.inc(rows.into()))?;
     progress.finish_and_clear();
-    let points = frame.statistics().points;
+    let points = statistics.points;
     display.to_rgb_output_image(&OutputSettings::default()).save_png(&arguments.output)?;
 
     let (progress, mut audit) = (bar(patches.len() as u64, "patches checked"), Audit::default());

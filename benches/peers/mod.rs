@@ -198,11 +198,16 @@ pub(crate) fn forward_f32_lanes<const L: usize, S: Sink + ?Sized>(cubic: &Cubic,
             // Differences of stride L at i: LΔ + C(L,2)Δ² + C(L,3)Δ³, and L²(Δ² + (L−1)Δ³), L³Δ³.
             let at = |c: usize| {
                 let c = c as f32;
-                (x + c * (d1 + (c - 1.0) * (0.5 * d2 + (c - 2.0) / 6.0 * d3)), d1 + c * (d2 + (c - 1.0) * 0.5 * d3), d2 + c * d3)
+                (
+                    x + c * (d1 + (c - 1.0) * (0.5 * d2 + (c - 2.0) / 6.0 * d3)),
+                    d1 + c * (d2 + (c - 1.0) * 0.5 * d3),
+                    d2 + c * d3,
+                )
             };
             let of = |c| {
                 let (x, d1, d2) = at(c);
-                let (first, second) = (l * (d1 + (l - 1.0) * (0.5 * d2 + (l - 2.0) / 6.0 * d3)), l * l * (d2 + (l - 1.0) * d3));
+                let (first, second) =
+                    (l * (d1 + (l - 1.0) * (0.5 * d2 + (l - 2.0) / 6.0 * d3)), l * l * (d2 + (l - 1.0) * d3));
                 (x, first, second)
             };
             Lanes {

@@ -5,6 +5,8 @@
 #![allow(clippy::disallowed_types, clippy::float_arithmetic, reason = "JSON numbers are binary64")]
 
 mod case;
+#[path = "../data/draw.rs"]
+mod draw;
 mod field;
 mod lattice;
 mod render;

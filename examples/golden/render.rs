@@ -1,18 +1,18 @@
 //! `golden render`: a picture of patches, and what it cost.
 
 use crate::case::Patch;
+use crate::draw;
 use crate::field::{Field, Malformed};
 use crate::view::View;
 use crate::{Answer, typed_error};
 use embedded_graphics::pixelcolor::Rgb888;
-use embedded_graphics::prelude::Size;
 use embedded_graphics_simulator::{OutputSettings, SimulatorDisplay};
 use embedded_surfaces::geometry::{Axis, GeometryError, Point3};
 use embedded_surfaces::graphics::Material;
 use embedded_surfaces::num::I16F16;
 use embedded_surfaces::patch::SurfaceNet;
 use embedded_surfaces::reference::{Audit, fixed_half_up};
-use embedded_surfaces::render::{Area, Frame, Light, Lines, RenderError, Scene, Style};
+use embedded_surfaces::render::{Area, Light, Lines, RenderError, Scene, Style};
 use serde_json::Map;
 use std::path::PathBuf;
 
@@ -143,14 +143,9 @@ fn picture(
     settings: &Settings,
     nets: &[SurfaceNet<'_>],
 ) -> Result<(SimulatorDisplay<Rgb888>, u64, Audit), RenderError> {
-    let size = Size::new(settings.area.width, settings.area.height);
-    let mut display = SimulatorDisplay::with_default_color(size, settings.background);
-    let paint = Material { colour: settings.colour };
+    let mut display = draw::blank(settings.area, settings.background);
+    let paint = (&Material { colour: settings.colour }, settings.background);
     let scene = Scene::new(nets, Light::default(), settings.style)?;
-    let mut frame = Frame::new(scene, &paint, settings.background, settings.area, settings.band)?;
-    let (mut colour, mut depth) = (vec![settings.background; frame.band_pixels()], vec![0; frame.band_pixels()]);
-    while let Some(band) = frame.next_band(&mut colour, &mut depth)? {
-        let Ok(()) = band.draw(&mut display);
-    }
-    Ok((display, frame.statistics().points, Audit::of(nets, settings.area)?))
+    let statistics = draw::in_bands(&mut display, scene, paint, (settings.area, settings.band), |_| ())?;
+    Ok((display, statistics.points, Audit::of(nets, settings.area)?))
 }

@@ -57,8 +57,9 @@ pub(crate) fn step_r<W: Word, const R: usize>(t: &mut Table<W, R>) {
 #[inline(always)]
 pub(crate) fn step_s<W: Word, const R: usize>(t: &mut Table<W, R>) {
     for b in 0..R - 1 {
-        for a in 0..R {
-            t[b][a] = t[b][a].wrapping_plus(t[b + 1][a]);
+        let next = t[b + 1];
+        for (entry, next) in t[b].iter_mut().zip(next) {
+            *entry = entry.wrapping_plus(next);
         }
     }
 }
