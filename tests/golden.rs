@@ -111,7 +111,7 @@ fn several_cases_give_several_results_and_pictures() {
 }
 
 /// A list of one flat triangle with these weights.
-fn flat(weights: Value) -> String {
+fn flat(weights: &Value) -> String {
     json!([{"kind": "tri", "degree": 1, "ctrl": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "weights": weights}]).to_string()
 }
 
@@ -172,12 +172,12 @@ fn what_is_wrong_exits_with_2_and_names_the_field() {
         ),
         (
             "render",
-            with("patches", json!([])).replace("\"patch\"", "\"unused\"").replace("[]", &flat(json!([1, 0, 1]))),
+            with("patches", json!([])).replace("\"patch\"", "\"unused\"").replace("[]", &flat(&json!([1, 0, 1]))),
             "patches[0].weights[1]",
         ),
         (
             "render",
-            with("patches", json!([])).replace("\"patch\"", "\"unused\"").replace("[]", &flat(json!([1, 1]))),
+            with("patches", json!([])).replace("\"patch\"", "\"unused\"").replace("[]", &flat(&json!([1, 1]))),
             "patches[0].weights",
         ),
     ];

@@ -80,10 +80,11 @@ impl Wide {
     pub(crate) fn shl(&self, bits: u32) -> Self {
         let (limbs, bits) = ((bits / 32) as usize, bits % 32);
         let mut out = [0; LIMBS];
-        for i in (limbs..LIMBS).rev() {
-            let high = self.0[i - limbs] << bits;
-            let low = if bits > 0 && i > limbs { self.0[i - limbs - 1] >> (32 - bits) } else { 0 };
-            out[i] = high | low;
+        let mut below = 0_u64;
+        for (out, limb) in out.iter_mut().skip(limbs).zip(&self.0) {
+            let pair = u64::from(*limb) << 32 | below;
+            *out = ((pair << bits) >> 32) as u32;
+            below = (*limb).into();
         }
         Self(out)
     }

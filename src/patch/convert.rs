@@ -47,7 +47,7 @@ impl Sum {
 }
 
 fn binomial(n: usize, k: usize) -> i128 {
-    i128::from(BINOMIAL[n][k])
+    BINOMIAL.get(n).and_then(|row| row.get(k)).map_or(0, |choices| i128::from(*choices))
 }
 
 /// The factor of point i of a net of degree m in point j of the net elevated to degree m + r, over C(m + r, j).
@@ -136,12 +136,17 @@ impl<const N: usize, const LEN: usize, C: Coord> Triangle<N, LEN, C> {
                         let a = N - b - c;
                         if a <= i {
                             let factor = binomial(i, a) * binomial(j, b) * binomial(k, c);
-                            sum.add(&self.points[triangle_index(b, c)], factor);
+                            if let Some(p) = self.points.get(triangle_index(b, c)) {
+                                sum.add(p, factor);
+                            }
                         }
                     }
                 }
                 let index = triangle_index(j, k);
-                points[index] = sum.divide(index, binomial(N2, r))?;
+                let point = sum.divide(index, binomial(N2, r))?;
+                if let Some(out) = points.get_mut(index) {
+                    *out = point;
+                }
             }
         }
         Ok(Triangle { points })

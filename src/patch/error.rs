@@ -1,6 +1,8 @@
 //! What can be wrong with a control net or a parameter.
 
-use crate::geometry::Axis;
+use super::Dimension;
+use crate::geometry::{Axis, Point3};
+use crate::num::I16F16;
 
 /// Why a net or a parameter was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +53,24 @@ pub enum NetError {
         /// The degree asked for.
         to: usize,
     },
+    /// Two borders of a Coons patch that do not end in the same point.
+    Corner {
+        /// The r of the corner, 0 or 1.
+        r: u8,
+        /// The s of the corner, 0 or 1.
+        s: u8,
+        /// Where the border along r ends.
+        along_r: Point3,
+        /// Where the border along s ends.
+        along_s: Point3,
+    },
+    /// A length of a solid that is not positive.
+    NotPositive {
+        /// Which one.
+        dimension: Dimension,
+        /// The length in units of 2^-16.
+        bits: i32,
+    },
 }
 
 impl core::fmt::Display for NetError {
@@ -66,6 +86,16 @@ impl core::fmt::Display for NetError {
                 write!(f, "parameter {numerator} / {denominator} is not in 0 ..= 1 with a denominator of 1 ..= 65536")
             }
             Self::Elevation { from, to } => write!(f, "degree {from} cannot be elevated to degree {to}"),
+            Self::Corner { r, s, along_r: p, along_s: q } => {
+                let ([px, py, pz], [qx, qy, qz]) =
+                    (p.to_array().map(I16F16::to_bits), q.to_array().map(I16F16::to_bits));
+                write!(
+                    f,
+                    "at the corner ({r}, {s}) the border along r ends at ({px}, {py}, {pz}) / 65536, \
+                     the one along s at ({qx}, {qy}, {qz}) / 65536"
+                )
+            }
+            Self::NotPositive { dimension, bits } => write!(f, "the {dimension} is not positive: {bits} / 65536"),
         }
     }
 }

@@ -6,7 +6,7 @@
 
 use super::{
     Barycentric, CurveNet, MAX_DEGREE, NetError, Parameter, RationalCurveNet, RationalTensorNet, RationalTriangleNet,
-    TensorNet, TriangleNet, triangle_index, triangle_len,
+    TensorNet, TriangleNet, triangle_len,
 };
 use crate::geometry::{Point3, Vector3};
 use crate::num::{Coord, I16F16, I32F32, Wide};
@@ -43,34 +43,38 @@ impl TriangleStep {
 }
 
 /// Collapses `steps.len() + 1` values to one.
-fn collapse_curve(values: &mut [Wide], steps: impl IntoIterator<Item = Step>) -> Wide {
-    let mut len = values.len();
+fn collapse_curve(mut values: &mut [Wide], steps: impl IntoIterator<Item = Step>) -> Wide {
     for step in steps {
-        len -= 1;
-        for i in 0..len {
-            values[i] = values[i].mul_i32(step.low).add(&values[i + 1].mul_i32(step.high));
+        for i in 1..values.len() {
+            values[i - 1] = values[i - 1].mul_i32(step.low).add(&values[i].mul_i32(step.high));
         }
+        let Some((_, shorter)) = values.split_last_mut() else { return Wide::ZERO };
+        values = shorter;
     }
-    values[0]
+    values.first().copied().unwrap_or(Wide::ZERO)
 }
 
 /// Collapses a triangular net of this degree to one value.
 fn collapse_triangle(values: &mut [Wide], degree: usize, steps: impl IntoIterator<Item = TriangleStep>) -> Wide {
     let mut degree = degree;
     for step in steps {
-        degree -= 1;
+        degree = degree.saturating_sub(1);
         let [u, v, w] = step.factors;
+        let mut index = 0;
         for row in 0..=degree {
-            for k in 0..=row {
-                let j = row - k;
-                // b[i,j,k] of the smaller net stands between its three parents towards u, v and w.
-                let (to_u, to_v, to_w) = (triangle_index(j, k), triangle_index(j + 1, k), triangle_index(j, k + 1));
-                let sum = values[to_u].mul_i32(u).add(&values[to_v].mul_i32(v)).add(&values[to_w].mul_i32(w));
-                values[to_u] = sum;
+            for _ in 0..=row {
+                // b[i,j,k] of the smaller net stands between its three parents towards u, v and w: itself and two
+                // neighbours in the next row.
+                let parent = |at: usize, factor| values.get(at).map_or(Wide::ZERO, |value| value.mul_i32(factor));
+                let sum = parent(index, u).add(&parent(index + row + 1, v)).add(&parent(index + row + 2, w));
+                if let Some(value) = values.get_mut(index) {
+                    *value = sum;
+                }
+                index += 1;
             }
         }
     }
-    values[0]
+    values.first().copied().unwrap_or(Wide::ZERO)
 }
 
 /// Where the coordinates of a weighted sum come from: w·x, w·y, w·z or w.
@@ -83,14 +87,14 @@ struct Source<'a, C> {
 impl<C: Coord> Source<'_, C> {
     /// Homogeneous coordinate `axis` (0 ..= 2, or 3 for the weight) of point `index`.
     fn get(&self, axis: usize, index: usize) -> Wide {
-        let weight = self.weights.map_or(1, |w| w[index].to_bits());
-        let p = &self.points[index];
-        let coordinate = match axis {
+        let weight = self.weights.map_or(1, |w| w.get(index).map_or(0, |w| w.to_bits()));
+        // The net was counted when it was made; the fallback is never taken.
+        let coordinate = self.points.get(index).map_or(0, |p| match axis {
             0 => p.x.bits(),
             1 => p.y.bits(),
             2 => p.z.bits(),
             _ => 1,
-        };
+        });
         Wide::from_i64(coordinate).mul_i32(weight)
     }
 }
@@ -107,7 +111,7 @@ struct TensorSource<'a, C>(Source<'a, C>, (usize, usize));
 impl<C: Coord, I: IntoIterator<Item = Step>> Collapse<I> for CurveSource<'_, C> {
     fn collapse(&self, axis: usize, steps: I) -> Wide {
         let mut values = [Wide::ZERO; MAX_DEGREE + 1];
-        let count = self.0.points.len();
+        let count = self.0.points.len().min(values.len());
         for (i, value) in values[..count].iter_mut().enumerate() {
             *value = self.0.get(axis, i);
         }
@@ -118,7 +122,7 @@ impl<C: Coord, I: IntoIterator<Item = Step>> Collapse<I> for CurveSource<'_, C> 
 impl<C: Coord, I: IntoIterator<Item = TriangleStep>> Collapse<I> for TriangleSource<'_, C> {
     fn collapse(&self, axis: usize, steps: I) -> Wide {
         let mut values = [Wide::ZERO; triangle_len(MAX_DEGREE)];
-        for (i, value) in values[..triangle_len(self.1)].iter_mut().enumerate() {
+        for (i, value) in values.iter_mut().enumerate().take(triangle_len(self.1)) {
             *value = self.0.get(axis, i);
         }
         collapse_triangle(&mut values, self.1, steps)
@@ -129,7 +133,7 @@ impl<C: Coord, R: IntoIterator<Item = Step>, S: IntoIterator<Item = Step> + Clon
     for TensorSource<'_, C>
 {
     fn collapse(&self, axis: usize, (along_r, along_s): (R, S)) -> Wide {
-        let (m, h) = self.1;
+        let (m, h) = (self.1.0.min(MAX_DEGREE), self.1.1.min(MAX_DEGREE));
         let mut columns = [Wide::ZERO; MAX_DEGREE + 1];
         for (i, column) in columns[..=m].iter_mut().enumerate() {
             let mut row = [Wide::ZERO; MAX_DEGREE + 1];

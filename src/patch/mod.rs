@@ -29,24 +29,33 @@
 //! ```
 
 mod convert;
+mod coons;
 mod curve;
 mod error;
 mod eval;
+mod exact;
 #[cfg(feature = "defmt")]
 mod format;
+mod hermite;
 mod net;
 mod parameter;
+pub mod quadrics;
 mod rational;
 mod rational_net;
+pub mod spline;
 mod tensor;
 mod triangle;
 
+pub use coons::CoonsBoundary;
 pub use curve::{CubicCurve, Curve, QuadraticCurve};
 pub use error::NetError;
+pub use hermite::HermiteCorner;
 pub use net::{CurveNet, Surface, SurfaceNet, TensorNet, TriangleNet};
 pub use parameter::{Barycentric, Parameter};
+pub use quadrics::{Dimension, cone, cylinder, sphere, torus};
 pub use rational::{RationalCurve, RationalTensor, RationalTriangle};
 pub use rational_net::{RationalCurveNet, RationalTensorNet, RationalTriangleNet};
+pub use spline::{BSplineCurve, BSplineSurface, KnotVector, NurbsCurve, NurbsSurface, Pieces, Spline, SplineError};
 pub use tensor::{BicubicPatch, BilinearPatch, BiquadraticPatch, BiquinticPatch, Tensor};
 pub use triangle::{CubicTriangle, FlatTriangle, QuadraticTriangle, QuarticTriangle, QuinticTriangle, Triangle};
 

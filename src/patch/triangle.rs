@@ -109,7 +109,8 @@ impl<const N: usize, const LEN: usize, C: Coord> Triangle<N, LEN, C> {
     /// b\[i,j,k\]; `None` unless i + j + k = N.
     #[must_use]
     pub fn point(&self, i: usize, j: usize, k: usize) -> Option<&Point3<C>> {
-        (i <= N && j <= N && k <= N && i + j + k == N).then(|| &self.points[triangle_index(j, k)])
+        let exists = i <= N && j <= N && k <= N && i + j + k == N;
+        if exists { self.points.get(triangle_index(j, k)) } else { None }
     }
 
     /// The patch, borrowed, with the degree erased.

@@ -1,5 +1,5 @@
 //! Shade levels of every lattice point against the `f64` reference.
-#![allow(clippy::disallowed_types, clippy::float_arithmetic)]
+#![allow(clippy::unwrap_used, clippy::disallowed_types, clippy::float_arithmetic)]
 
 use super::light::normal;
 use super::plan::Plan;
@@ -88,7 +88,7 @@ fn levels_are_within_one_of_exact_arithmetic() {
         for _ in 0..12 {
             let patch = BicubicPatch::new(core::array::from_fn(|i| {
                 core::array::from_fn(|j| {
-                    let mut c = |base: usize| (base as i32 * 30 << 16) + (random(&mut seed) - (1 << 23)) / 4;
+                    let mut c = |base: usize| ((base as i32 * 30) << 16) + (random(&mut seed) - (1 << 23)) / 4;
                     crate::geometry::Point3::from_bits(c(i), c(j), c(1))
                 })
             }))

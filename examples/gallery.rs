@@ -1,0 +1,158 @@
+//! Every picture of the docs, drawn anew: `cargo run --release --example gallery -- -o docs/img`.
+//!
+//! CI compares the files byte for byte; `UPDATE_DOCS=1 cargo test --test docs` embeds them in the docs.
+#![allow(clippy::disallowed_types, clippy::float_arithmetic, reason = "host-side figures")]
+
+#[path = "data/draw.rs"]
+mod draw;
+#[path = "data/seed.rs"]
+mod seed;
+#[path = "data/teapot.rs"]
+mod teapot;
+
+use clap::Parser;
+use embedded_graphics::pixelcolor::{BinaryColor, Gray2, PixelColor, Rgb888};
+use embedded_graphics::prelude::{GrayColor, RgbColor};
+use embedded_graphics_simulator::{OutputSettings, SimulatorDisplay};
+use embedded_surfaces::geometry::{Affine, Perspective, View};
+use embedded_surfaces::graphics::{Material, Ramps, Shade};
+use embedded_surfaces::num::{Angle, I16F16, I32F32};
+use embedded_surfaces::patch::{BicubicPatch, RationalTensor, Surface, SurfaceNet, cone, cylinder, sphere, torus};
+use embedded_surfaces::render::{Area, Fragment, Gloss, Light, Lines, Scene, Style};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+/// Draw every picture of the docs.
+#[derive(Parser)]
+struct Arguments {
+    /// The folder that the pictures go to
+    #[arg(short, long, default_value = "docs/img")]
+    output: PathBuf,
+}
+
+type Outcome = Result<(), Box<dyn Error>>;
+
+const BACKGROUND: Rgb888 = Rgb888::new(24, 28, 44);
+const CLAY: Rgb888 = Rgb888::new(236, 196, 140);
+const SCREEN: Area = Area { x: 0, y: 0, width: 320, height: 240 };
+
+fn main() -> Outcome {
+    let folder = Arguments::parse().output;
+    std::fs::create_dir_all(&folder)?;
+    let pot = pot(SCREEN, View::default())?;
+    single(&folder, "teapot", &pot, &Material { colour: CLAY }, BACKGROUND)?;
+    single(&folder, "teapot_1_bit", &pot, &Material { colour: BinaryColor::On }, BinaryColor::Off)?;
+    single(&folder, "teapot_4_greys", &pot, &Material { colour: Gray2::WHITE }, Gray2::BLACK)?;
+    perspective(&folder)?;
+    seed_patches(&folder)?;
+    styles(&folder)?;
+    shapes(&folder)
+}
+
+fn save<C: PixelColor + Into<Rgb888>>(folder: &Path, name: &str, display: &SimulatorDisplay<C>) -> Outcome {
+    let path = folder.join(name).with_extension("png");
+    display.to_rgb_output_image(&OutputSettings::default()).save_png(&path)?;
+    println!("{}", path.display());
+    Ok(())
+}
+
+/// The teapot fitted to a part of a picture.
+fn pot(area: Area, view: View) -> Result<[BicubicPatch; 32], Box<dyn Error>> {
+    let fitted = view.fit(teapot::vertices(), area.width, area.height, I16F16::from_num(0.92))?;
+    Ok(teapot::patches(&fitted.then(&moved(area))?)?)
+}
+
+/// The map from a picture of its own to a part of another.
+fn moved(area: Area) -> Affine {
+    Affine::translation(I32F32::from_num(area.x), I32F32::from_num(area.y), I32F32::ZERO)
+}
+
+fn single<P>(folder: &Path, name: &str, patches: &[BicubicPatch], paint: &P, background: P::Pixel) -> Outcome
+where
+    P: embedded_surfaces::render::Paint,
+    P::Pixel: PixelColor + Into<Rgb888>,
+{
+    let mut display = draw::blank(SCREEN, background);
+    let scene = Scene::new(patches, Light::default(), Style::Shaded)?;
+    draw::in_bands(&mut display, scene, (paint, background), (SCREEN, 16), |_| ())?;
+    save(folder, name, &display)
+}
+
+/// The teapot seen from nearby: rational patches, glossy, with a ramp from shadow to highlight.
+fn perspective(folder: &Path) -> Outcome {
+    let view = View { tilt: Angle::from_degrees(-72), spin: Angle::from_degrees(30) };
+    let eye = Perspective {
+        centre_x: I16F16::from_num(160),
+        centre_y: I16F16::from_num(120),
+        distance: I16F16::from_num(420),
+    };
+    let pot = pot(SCREEN, view)?;
+    let seen = pot.iter().map(|patch| patch.perspective(&eye)).collect::<Result<Vec<_>, _>>()?;
+    let glaze = [Rgb888::new(10, 14, 40), Rgb888::new(40, 90, 170), Rgb888::new(120, 190, 240), Rgb888::WHITE];
+    let mut display = draw::blank(SCREEN, BACKGROUND);
+    let scene = Scene::new(&seen, Light::default(), Style::Glossy(Gloss::new(150, 28)))?;
+    draw::in_bands(&mut display, scene, (&Ramps { ramps: &[&glaze] }, BACKGROUND), (SCREEN, 16), |_| ())?;
+    save(folder, "perspective", &display)
+}
+
+/// The two patches of the point-by-point paper, along z and along x.
+fn seed_patches(folder: &Path) -> Outcome {
+    let mut display = draw::blank(seed::AREA, BACKGROUND);
+    let patches = seed::both_views()?;
+    let paint = |at: Fragment| seed::COLOURS.get(at.patch % 2).map_or(CLAY, |c| c.shaded(at.shade, at.x, at.y));
+    let scene = Scene::new(&patches, Light::default(), Style::Shaded)?;
+    draw::in_bands(&mut display, scene, (&paint, BACKGROUND), (seed::AREA, 16), |_| ())?;
+    save(folder, "seed_patches", &display)
+}
+
+/// Six styles of the same teapot.
+fn styles(folder: &Path) -> Outcome {
+    let lines = Lines::every(5).without_hidden();
+    let styles = [
+        Style::Shaded,
+        Style::Glossy(Gloss::new(110, 24)),
+        Style::DepthCued { near: 255, far: 50 },
+        Style::Wire(lines),
+        Style::Net { hidden: false },
+        Style::Normals { lines: Lines::every(3).without_hidden(), length: 9 },
+    ];
+    let mut display = draw::blank(Area { x: 0, y: 0, width: 660, height: 330 }, BACKGROUND);
+    for (k, style) in styles.into_iter().enumerate() {
+        let area = Area { x: 220 * (k as i32 % 3), y: 165 * (k as i32 / 3), width: 220, height: 165 };
+        let pot = pot(area, View::default())?;
+        let scene = Scene::new(&pot, Light::default(), style)?;
+        let paint = Material { colour: CLAY };
+        draw::in_bands(&mut display, scene, (&paint, BACKGROUND), (area, 16), |_| ())?;
+    }
+    save(folder, "styles", &display)
+}
+
+/// Sphere, cylinder, cone and torus: rational patches with the weights 1, 1, 2, tilted.
+fn shapes(folder: &Path) -> Outcome {
+    let origin = embedded_surfaces::geometry::Point3::ORIGIN;
+    let size = I16F16::from_num;
+    let solids: [Vec<RationalTensor<3, 3>>; 4] = [
+        sphere(origin, size(60))?.to_vec(),
+        cylinder(origin, size(42), size(100))?.to_vec(),
+        cone(origin, size(55), size(110))?.to_vec(),
+        torus(origin, size(46), size(20))?.to_vec(),
+    ];
+    let colours = [
+        Rgb888::new(240, 140, 120),
+        Rgb888::new(130, 200, 140),
+        Rgb888::new(240, 210, 110),
+        Rgb888::new(140, 170, 240),
+    ];
+    let mut display = draw::blank(Area { x: 0, y: 0, width: 640, height: 160 }, BACKGROUND);
+    let view = View { tilt: Angle::from_degrees(-60), spin: Angle::from_degrees(20) };
+    for (k, (solid, colour)) in solids.iter().zip(colours).enumerate() {
+        let area = Area { x: 160 * k as i32, y: 0, width: 160, height: 160 };
+        let points = solid.iter().flat_map(|patch| patch.surface().points().iter());
+        let map = view.fit(points, area.width, area.height, I16F16::from_num(0.85))?.then(&moved(area))?;
+        let seen = solid.iter().map(|patch| patch.transform(&map)).collect::<Result<Vec<_>, _>>()?;
+        let nets: Vec<SurfaceNet<'_>> = seen.iter().map(Surface::surface).collect();
+        let scene = Scene::new(&nets, Light::default(), Style::Glossy(Gloss::new(90, 20)))?;
+        draw::in_bands(&mut display, scene, (&Material { colour }, BACKGROUND), (area, 16), |_| ())?;
+    }
+    save(folder, "shapes", &display)
+}
