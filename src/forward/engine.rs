@@ -2,6 +2,7 @@
 
 use super::form::Form;
 use super::kernel::{Accumulate, Mask, Residual};
+use super::lanes::LANES;
 use super::lattice::LatticePoint;
 use super::quotient::QuotientWalker;
 use super::visit::{Site, Visit};
@@ -56,6 +57,8 @@ macro_rules! with_walker {
             Accumulator::I32 if degree < 4 => {
                 if let Some(kernel) = Accumulate::<i32>::of(budget, integer_bits) {
                     run!(Accumulate32, 4, kernel)
+                } else if let Some(kernel) = Accumulate::<i64>::of(budget, integer_bits).filter(|_| LANES > 1) {
+                    run!(Accumulate64, 4, kernel)
                 } else if let Some(kernel) = Mask::<i32>::of(budget) {
                     run!(Mask32, 4, kernel)
                 } else {
@@ -120,6 +123,8 @@ struct Fold<B, F> {
 }
 
 impl<B, F: FnMut(B, LatticePoint) -> B> Visit for Fold<B, F> {
+    const POINTS_ONLY: bool = true;
+
     #[inline(always)]
     fn point<S: Site>(self, at: &S) -> Self {
         let Self { state, mut f } = self;

@@ -18,12 +18,19 @@ pub(crate) trait Kernel: Copy {
 
     /// The rounded coordinate.
     fn read(&self, x: i32, e: Self::Word) -> i32;
+
+    /// The fraction and integer bits of e where it holds N·x + e and nothing else moves: such rows can run in lanes.
+    #[inline(always)]
+    fn bits(&self) -> Option<(u32, u32)> {
+        None
+    }
 }
 
 /// N = 2^f with room for the coordinate above f: e holds N·x + e.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Accumulate<W> {
     shift: usize,
+    integer_bits: u32,
     word: core::marker::PhantomData<W>,
 }
 
@@ -47,7 +54,7 @@ impl<W: Word> Accumulate<W> {
     /// The kernel where N is a power of two and `integer_bits`, sign included, fit above it.
     pub(crate) fn of(budget: &Budget, integer_bits: u32) -> Option<Self> {
         let shift = budget.dyadic().filter(|f| f + integer_bits <= <W as Word>::BITS)?;
-        Some(Self { shift: shift as usize, word: core::marker::PhantomData })
+        Some(Self { shift: shift as usize, integer_bits, word: core::marker::PhantomData })
     }
 }
 
@@ -66,6 +73,11 @@ impl<W: Word> Kernel for Accumulate<W> {
     #[inline(always)]
     fn read(&self, _: i32, e: W) -> i32 {
         (e >> self.shift).as_()
+    }
+
+    #[inline(always)]
+    fn bits(&self) -> Option<(u32, u32)> {
+        Some((self.shift as u32, self.integer_bits))
     }
 }
 

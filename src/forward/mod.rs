@@ -34,6 +34,7 @@ mod curve;
 mod engine;
 mod form;
 mod kernel;
+mod lanes;
 mod lattice;
 mod quotient;
 mod steps;

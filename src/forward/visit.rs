@@ -29,6 +29,9 @@ pub(crate) trait Visit: Sized {
     /// Whether [`Site::tangents`] is wanted.
     const TANGENTS: bool = false;
 
+    /// Whether the visitor looks at nothing but i, j and the point of a [`Site`]: then rows may run in lanes.
+    const POINTS_ONLY: bool = false;
+
     /// Whether the points of row `j` are wanted.
     fn wants_row(&self, j: u32) -> bool {
         let _ = j;

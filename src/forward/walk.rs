@@ -3,7 +3,8 @@
 use super::Budget;
 use super::form::{Form, Kind};
 use super::kernel::Kernel;
-use super::table::{Table, difference_table, double_steps, step_r, step_s};
+use super::lanes::{CHUNK, Chunk, LANES, Lanes};
+use super::table::{Table, difference_table, double_steps, step, step_r, step_s};
 use super::tangent::Weights;
 use super::visit::{Fraction, Site, Visit};
 use crate::num::Word;
@@ -149,19 +150,35 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
         if self.position.1 > self.last_row {
             return visitor;
         }
+        let mut lanes = if LANES > 1 && V::POINTS_ONLY { self.kernel.bits().map(Lanes::new) } else { None };
+        let mut chunk = Chunk::default();
         loop {
             let (mut i, j) = self.position;
-            let mut row = self.row;
-            while visitor.wants_row(j) {
-                let point = core::array::from_fn(|axis| self.kernel.read(row.x[axis], row.e[axis]));
-                visitor = visitor.point(&At { i, j, point, row: &row, weights: &self.weights });
-                if i == self.last_in_row {
-                    break;
+            if let Some(lanes) = &mut lanes
+                && self.last_in_row - i >= CHUNK as u32
+            {
+                lanes.start(&self.row.e, &self.row.d);
+                while i <= self.last_in_row {
+                    lanes.next(&mut chunk);
+                    let count = (self.last_in_row - i + 1).min(CHUNK as u32);
+                    for (i, point) in (i..).zip(chunk.points(count)) {
+                        visitor = visitor.point(&At { i, j, point, row: &self.row, weights: &self.weights });
+                    }
+                    i += count;
                 }
-                i += 1;
-                row.step(&self.kernel);
-                if V::TANGENTS {
-                    row.step_tangent();
+            } else if visitor.wants_row(j) {
+                let mut row = self.row;
+                loop {
+                    let point = core::array::from_fn(|axis| self.kernel.read(row.x[axis], row.e[axis]));
+                    visitor = visitor.point(&At { i, j, point, row: &row, weights: &self.weights });
+                    if i == self.last_in_row {
+                        break;
+                    }
+                    i += 1;
+                    row.step(&self.kernel);
+                    if V::TANGENTS {
+                        row.step_tangent();
+                    }
                 }
             }
             if j == self.last_row {
@@ -226,10 +243,6 @@ impl<W: Word, const R: usize> Row<W, R> {
 
     #[inline(always)]
     fn step_tangent(&mut self) {
-        for axis in 0..3 {
-            for a in 0..R - 1 {
-                self.v[axis][a] = self.v[axis][a].wrapping_plus(self.v[axis][a + 1]);
-            }
-        }
+        self.v.iter_mut().for_each(step);
     }
 }
