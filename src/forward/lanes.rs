@@ -148,3 +148,52 @@ fn advance<T: Copy, const R: usize>(
     }
     *axis = values;
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::forward::{Lattice, LatticePoint, Steps};
+    use crate::geometry::Point3;
+    use crate::patch::{SurfaceNet, TensorNet, TriangleNet};
+    use std::vec::Vec;
+
+    /// Points of this size and sign pattern, with some low bits set: whole coordinates only for `fraction` 0.
+    fn net(len: usize, size: i32, fraction: u32) -> Vec<Point3> {
+        let c = |k: usize| {
+            let whole = (size * (k as i32 * 7 % 5 - 2) / 2) << 16;
+            whole + if fraction > 0 { (k as i32 % 3) << (16 - fraction) } else { 0 }
+        };
+        (0..len).map(|k| Point3::from_bits(c(k), c(3 * k + 1), c(k * k))).collect()
+    }
+
+    /// `for_each` runs rows in lanes, `next` never does; also from the middle of a row.
+    fn check(net: SurfaceNet<'_>, n: u32) {
+        let lattice = Lattice::new(net, Steps::uniform(n).unwrap()).unwrap();
+        let mut points = lattice.points();
+        let one_by_one: Vec<LatticePoint> = core::iter::from_fn(|| points.next()).collect();
+        for skipped in [0, 1, 31, n as usize, n as usize + 9] {
+            let mut rest = lattice.points();
+            rest.by_ref().take(skipped).for_each(drop);
+            let mut in_lanes = Vec::new();
+            rest.for_each(|p| in_lanes.push(p));
+            assert!(in_lanes == one_by_one[skipped..], "{:?} n={n} after {skipped}", lattice.budget());
+        }
+    }
+
+    /// All ways to fill lanes: n = 256 and 10 to 16 integer bits drop none to two bits or take the wide kind.
+    #[test]
+    fn lanes_give_the_points_of_the_plain_walk() {
+        for (size, fraction) in [(3, 0), (200, 0), (1000, 0), (30_000, 0), (200, 4), (32_767, 1)] {
+            for degree in 1..=5 {
+                let points = net((degree + 1) * (degree + 1), size, fraction);
+                let triangle = TriangleNet::new(degree, &points[..(degree + 1) * (degree + 2) / 2]).unwrap();
+                for n in [32, 64, 128, 256] {
+                    check(SurfaceNet::Triangle(triangle), n);
+                }
+                let tensor = TensorNet::new((degree, degree), &points).unwrap();
+                for n in [32, 64] {
+                    check(SurfaceNet::Tensor(tensor), n);
+                }
+            }
+        }
+    }
+}
