@@ -278,6 +278,7 @@ mod tests {
                 }
                 rows[0][0]
             }
+            rational => panic!("{rational:?} is not a polynomial"),
         }
     }
 
