@@ -11,6 +11,7 @@
 mod band;
 mod colour;
 mod model;
+mod tiles;
 
 pub use colour::{Material, Shade};
 pub use model::Model;
