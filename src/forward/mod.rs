@@ -35,6 +35,8 @@ mod engine;
 mod form;
 mod kernel;
 mod lattice;
+#[cfg(feature = "graphics")]
+mod plane;
 mod quotient;
 mod steps;
 mod table;
@@ -50,6 +52,8 @@ pub use steps::{Sampling, Steps};
 pub(crate) use budget::MAX_STEPS;
 pub(crate) use form::Form;
 pub(crate) use kernel::{Kernel, Residual};
+#[cfg(feature = "graphics")]
+pub(crate) use plane::{PlanePlan, PlaneWalk, PlaneWalker};
 pub(crate) use quotient::QuotientWalker;
 pub(crate) use tangent::tangent_bits;
 pub(crate) use visit::{Fraction, Site, Visit};

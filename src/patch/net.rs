@@ -110,7 +110,7 @@ impl<'a, C: Coord> CurveNet<'a, C> {
         Ok(Self { points })
     }
 
-    pub(super) const fn of_checked(points: &'a [Point3<C>]) -> Self {
+    pub(crate) const fn of_checked(points: &'a [Point3<C>]) -> Self {
         Self { points }
     }
 
