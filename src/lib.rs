@@ -39,7 +39,7 @@
 //! | feature | brings |
 //! |---|---|
 //! | `graphics` (default) | `graphics`: drawing into `embedded-graphics-core` targets |
-//! | `styled` | `Transform` on models; needs the full `embedded-graphics` |
+//! | `styled` | `Transform` on models and curves, `into_styled` on curves; needs the full `embedded-graphics` |
 //! | `defmt` | `defmt::Format` on every public type |
 //! | `std` | `reference`; the rest stays `no_std` code |
 //!

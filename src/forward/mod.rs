@@ -36,6 +36,8 @@ mod form;
 mod kernel;
 mod lanes;
 mod lattice;
+#[cfg(feature = "graphics")]
+mod plane;
 mod quotient;
 mod steps;
 mod table;
@@ -51,6 +53,8 @@ pub use steps::{Sampling, Steps};
 pub(crate) use budget::MAX_STEPS;
 pub(crate) use form::Form;
 pub(crate) use kernel::{Kernel, Residual};
+#[cfg(feature = "graphics")]
+pub(crate) use plane::{PlanePlan, PlaneWalk, PlaneWalker};
 pub(crate) use quotient::QuotientWalker;
 pub(crate) use steps::row_count;
 pub(crate) use tangent::tangent_bits;

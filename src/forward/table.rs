@@ -112,7 +112,7 @@ fn each_column<W: Word, const R: usize>(t: &mut Table<W, R>, last: usize, change
 
 /// v_a to Δ^a v_0, in place.
 #[inline(never)]
-fn differences<W: Word>(values: &mut [W]) {
+pub(super) fn differences<W: Word>(values: &mut [W]) {
     let mut rest = values;
     while let Some((first, tail)) = rest.split_first_mut() {
         let mut before = *first;
@@ -127,7 +127,7 @@ fn differences<W: Word>(values: &mut [W]) {
 
 /// Coefficients of i^k to the differences of their sum at i = 0, in place.
 #[inline(never)]
-fn to_newton<W: Word>(values: &mut [W]) {
+pub(super) fn to_newton<W: Word>(values: &mut [W]) {
     for a in 1..values.len().min(SURJECTIONS.len()) {
         let terms = values[a..].iter().zip(&SURJECTIONS[a..]);
         values[a] = terms.fold(W::ZERO, |sum, (value, by)| sum.wrapping_plus(value.wrapping_mul_i64(by[a].into())));

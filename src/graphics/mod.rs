@@ -1,19 +1,30 @@
 //! Adapters to `embedded-graphics`: the only module that names it.
 //!
-//! In come scenes of [`crate::render`]; out go pixels in a `DrawTarget`.
+//! In come scenes of [`crate::render`] and curves in the plane; out go pixels in a `DrawTarget`.
 //!
 //! * [`Band::draw`](crate::render::Band::draw) sends a band by `fill_contiguous`, clipped to the target.
 //! * [`Model`] is a `Drawable`: patches, a colour, a light and a place. It draws only the pixels that it covers.
+//! * [`BezierCurve`] is a primitive: a curve of any degree, polynomial or rational, at a place. [`Stroke`] draws it, one
+//!   pixel wide or thick; `into_styled` does with the feature `styled`.
 //! * [`Material`] turns levels into colours: every RGB and grey type, and `BinaryColor` by ordered dithering.
 //!
 //! Nothing outside the target's bounding box is ever emitted, and no pixel twice.
 
 mod band;
 mod colour;
+mod curve;
+mod mask;
 mod model;
+mod stroke;
+#[cfg(feature = "styled")]
+mod styled;
+mod tiles;
 
 pub use colour::{Material, Mix, Ramps, Shade};
 pub use model::Model;
+
+pub use curve::{AnyCurveNet, BezierCurve, CurvePixels};
+pub use stroke::{MAX_STROKE_WIDTH, Stroke};
 
 /// The `embedded-graphics-core` that this crate was built with.
 pub use embedded_graphics_core;

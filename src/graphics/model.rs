@@ -1,6 +1,7 @@
 //! Patches as a `Drawable`.
 
 use super::colour::{Material, Shade};
+use super::tiles::{add_offset, each_tile, line, moved, runs};
 use crate::patch::Surface;
 use crate::render::{Area, Light, RenderError, Scene, Style, Tile};
 use embedded_graphics_core::Drawable;
@@ -80,10 +81,7 @@ impl<'a, S: Surface, C: Shade, const BUFFER: usize> Model<'a, S, C, BUFFER> {
 
     /// Moves the model by whole pixels. Places beyond ±2^29 stop there.
     pub fn translate_mut(&mut self, by: Point) -> &mut Self {
-        // `Rectangle` adds without checks: stay far from the ends of i32.
-        const FAR: i32 = 1 << 29;
-        self.offset.x = self.offset.x.saturating_add(by.x).clamp(-FAR, FAR);
-        self.offset.y = self.offset.y.saturating_add(by.y).clamp(-FAR, FAR);
+        self.offset = add_offset(self.offset, by);
         self
     }
 
@@ -91,39 +89,24 @@ impl<'a, S: Surface, C: Shade, const BUFFER: usize> Model<'a, S, C, BUFFER> {
     #[must_use]
     pub fn bounding_box(&self) -> Rectangle {
         let area = self.scene.area().unwrap_or(Area { x: 0, y: 0, width: 0, height: 0 });
-        self.moved(area.into(), 1)
-    }
-
-    /// `area` moved by `sign` times the offset.
-    fn moved(&self, area: Rectangle, sign: i32) -> Rectangle {
-        let corner = Point::new(
-            area.top_left.x.saturating_add(self.offset.x * sign),
-            area.top_left.y.saturating_add(self.offset.y * sign),
-        );
-        Rectangle::new(corner, area.size)
+        moved(area.into(), self.offset, 1)
     }
 
     /// Draws the part of the model inside `area` (in target coordinates, at most `BUFFER` pixels).
     fn draw_tile<D: DrawTarget<Color = C>>(&self, area: Rectangle, target: &mut D) -> Result<(), D::Error> {
         let (mut colour, mut depth) = ([self.material.colour; BUFFER], [0; BUFFER]);
-        let own = Area::from(self.moved(area, -1));
+        let own = Area::from(moved(area, self.offset, -1));
         let Ok(mut tile) = Tile::new(own, &mut colour, &mut depth, self.material.colour) else {
             return Ok(());
         };
         self.scene.draw(&mut tile, &self.material);
         let width = area.size.width as usize;
         for (row, pixels) in tile.pixels().chunks_exact(width.max(1)).enumerate() {
-            let mut column = 0;
-            while column < width {
-                let covered = |c: &usize| tile.is_covered(row * width + c);
-                let start = (column..width).find(covered).unwrap_or(width);
-                let end = (start..width).find(|c| !covered(c)).unwrap_or(width);
-                if let Some(run) = pixels.get(start..end).filter(|run| !run.is_empty()) {
-                    let corner = area.top_left + Point::new(start as i32, row as i32);
-                    let line = Rectangle::new(corner, Size::new(run.len() as u32, 1));
-                    target.fill_contiguous(&line, run.iter().copied())?;
+            let find = |column: usize, covered| (column..width).find(|c| tile.is_covered(row * width + c) == covered);
+            for run in runs(width, |column, covered| find(column, covered).unwrap_or(width)) {
+                if let Some(colours) = pixels.get(run.clone()) {
+                    target.fill_contiguous(&line(area, row, &run), colours.iter().copied())?;
                 }
-                column = end;
             }
         }
         Ok(())
@@ -139,22 +122,10 @@ impl<S: Surface, C: Shade, const BUFFER: usize> Drawable for Model<'_, S, C, BUF
         if visible.is_zero_sized() {
             return Ok(());
         }
-        let (right, bottom) = (visible.size.width, visible.size.height);
         let buffer = u32::try_from(BUFFER).unwrap_or(u32::MAX);
-        let width = right.min(buffer).max(1);
-        let height = buffer.checked_div(width).unwrap_or(1).min(bottom).max(1);
-        let mut y = 0;
-        while y < bottom {
-            let mut x = 0;
-            while x < right {
-                let corner = visible.top_left + Point::new(x as i32, y as i32);
-                let size = Size::new(width.min(right - x), height.min(bottom - y));
-                self.draw_tile(Rectangle::new(corner, size), target)?;
-                x += width;
-            }
-            y += height;
-        }
-        Ok(())
+        let width = visible.size.width.min(buffer).max(1);
+        let height = buffer.checked_div(width).unwrap_or(1);
+        each_tile(visible, Size::new(width, height), |area| self.draw_tile(area, target))
     }
 }
 

@@ -28,7 +28,7 @@ macro_rules! rational_view {
                 }
             }
 
-            pub(super) const fn of_checked(net: $net<'a, C>, weights: &'a [I16F16]) -> Self {
+            pub(crate) const fn of_checked(net: $net<'a, C>, weights: &'a [I16F16]) -> Self {
                 Self { net, weights }
             }
 
