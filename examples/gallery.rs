@@ -11,13 +11,17 @@ mod seed;
 mod teapot;
 
 use clap::Parser;
+use embedded_graphics::Drawable;
 use embedded_graphics::pixelcolor::{BinaryColor, Gray2, PixelColor, Rgb888};
 use embedded_graphics::prelude::{GrayColor, RgbColor};
 use embedded_graphics_simulator::{OutputSettings, SimulatorDisplay};
 use embedded_surfaces::geometry::{Affine, Perspective, View};
-use embedded_surfaces::graphics::{Material, Ramps, Shade};
+use embedded_surfaces::graphics::{BezierCurve, Material, Ramps, Shade, Stroke};
 use embedded_surfaces::num::{Angle, I16F16, I32F32};
-use embedded_surfaces::patch::{BicubicPatch, RationalTensor, Surface, SurfaceNet, cone, cylinder, sphere, torus};
+use embedded_surfaces::patch::{
+    BicubicPatch, CubicCurve, Curve, QuadraticCurve, RationalCurve, RationalTensor, Surface, SurfaceNet, cone,
+    cylinder, sphere, torus,
+};
 use embedded_surfaces::render::{Area, Fragment, Gloss, Light, Lines, Scene, Style};
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -46,7 +50,8 @@ fn main() -> Outcome {
     perspective(&folder)?;
     seed_patches(&folder)?;
     styles(&folder)?;
-    shapes(&folder)
+    shapes(&folder)?;
+    curves(&folder)
 }
 
 fn save<C: PixelColor + Into<Rgb888>>(folder: &Path, name: &str, display: &SimulatorDisplay<C>) -> Outcome {
@@ -155,4 +160,34 @@ fn shapes(folder: &Path) -> Outcome {
         draw::in_bands(&mut display, scene, (&Material { colour }, BACKGROUND), (area, 16), |_| ())?;
     }
     save(folder, "shapes", &display)
+}
+
+/// Curves without a surface: strokes of 1 to 12 pixels, of degrees 2 to 5, and a circle of four rational arcs.
+fn curves(folder: &Path) -> Outcome {
+    let area = Area { x: 0, y: 0, width: 640, height: 160 };
+    let mut display = draw::blank(area, BACKGROUND);
+    let colours = [CLAY, Rgb888::new(130, 200, 140), Rgb888::new(240, 140, 120), Rgb888::new(140, 170, 240)];
+    let arch = QuadraticCurve::from_ints([[15, 140, 0], [70, -90, 0], [145, 130, 0]])?;
+    let loop_ = CubicCurve::from_ints([[170, 140, 0], [400, 0, 0], [100, -10, 0], [310, 145, 0]])?;
+    let wave = Curve::<6>::from_ints([
+        [330, 80, 0],
+        [360, -160, 0],
+        [380, 330, 0],
+        [430, -160, 0],
+        [450, 320, 0],
+        [475, 80, 0],
+    ])?;
+    for (curve, (colour, width)) in [BezierCurve::new(&arch)?, BezierCurve::new(&loop_)?, BezierCurve::new(&wave)?]
+        .iter()
+        .zip(colours.into_iter().zip([1, 3, 8]))
+    {
+        Stroke::<_>::new(*curve, colour, width).draw(&mut display)?;
+    }
+    let (x, y, r) = (565_i16, 80_i16, 60_i16);
+    for [a, b] in [[1, 1], [-1, 1], [-1, -1], [1, -1]] {
+        let arc = QuadraticCurve::from_ints([[x + a * r, y, 0], [x + a * r, y + b * r, 0], [x, y + b * r, 0]])?;
+        let arc = RationalCurve::new(arc, [1, 1, 2].map(I16F16::from_num))?;
+        Stroke::<_>::new(BezierCurve::new(&arc)?, colours[3], 12).draw(&mut display)?;
+    }
+    save(folder, "curves", &display)
 }

@@ -8,10 +8,10 @@ mod scene;
 use common::{SEED_P, SEED_Q};
 use embedded_surfaces::forward::{Lattice, Steps};
 use embedded_surfaces::geometry::{Affine, Perspective, Point3};
-use embedded_surfaces::num::{I16F16, I32F32};
+use embedded_surfaces::num::{Angle, I16F16, I32F32};
 use embedded_surfaces::patch::{
     BicubicPatch, BilinearPatch, CubicTriangle, RationalTensorNet, RationalTriangleNet, Surface, SurfaceNet, TensorNet,
-    TriangleNet,
+    TriangleNet, sphere, torus,
 };
 use embedded_surfaces::reference::{Audit, Coverage, fine_mesh};
 use embedded_surfaces::render::Area;
@@ -196,4 +196,18 @@ fn the_teapot_in_perspective_in_six_views() {
         let seen: Vec<_> = patches.iter().map(|p| p.perspective(&eye).unwrap()).collect();
         nothing_missed(&seen, SCREEN, 25_000);
     }
+}
+
+#[test]
+fn spheres_and_tori() {
+    let centre = Point3::from_ints(160, 120, 0);
+    let view = Affine::rotation_x(Angle::from_degrees(33)).then(&Affine::rotation_z(Angle::from_degrees(20))).unwrap();
+    let map = Affine::translation((-160).into(), (-120).into(), 0.into()).then(&view).unwrap();
+    let map = map.then(&Affine::translation(160.into(), 120.into(), 0.into())).unwrap();
+    let size = I16F16::from_num;
+    let mut solids: Vec<_> = sphere(centre, size(90)).unwrap().to_vec();
+    solids.extend(torus(centre, size(70), size(27)).unwrap());
+    nothing_missed(&solids, SCREEN, 20_000);
+    let turned: Vec<_> = solids.iter().map(|patch| patch.transform(&map).unwrap()).collect();
+    nothing_missed(&turned, SCREEN, 20_000);
 }

@@ -8,7 +8,8 @@ use embedded_surfaces::forward::{CurveLattice, Lattice, LatticePoint, Sampling, 
 use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::num::I16F16;
 use embedded_surfaces::patch::{
-    CurveNet, RationalCurveNet, RationalTensorNet, RationalTriangleNet, SurfaceNet, TensorNet, TriangleNet,
+    CurveNet, RationalCurveNet, RationalTensorNet, RationalTriangleNet, Surface, SurfaceNet, TensorNet, TriangleNet,
+    sphere,
 };
 use num_bigint::BigInt;
 use num_rational::BigRational;
@@ -171,4 +172,30 @@ fn sampling_takes_centres_where_cells_lie_at_45_degrees() {
         [(0, 0), (0, 100), (100, 0), (100, 100)].map(|(x, y)| Point3::from_ints(x, y, 0)).into_iter().collect();
     let net = SurfaceNet::Tensor(TensorNet::new((1, 1), &straight).unwrap());
     assert_eq!(Sampling::cheapest(net), Sampling { steps: Steps::uniform(101).unwrap(), centres: false });
+}
+
+/// Every lattice point of a sphere lies within √3/2 of it: each coordinate is within 1/2 of a point on it.
+#[test]
+fn a_sphere_is_the_true_sphere_rounded() {
+    for radius in [5_i16, 60, 333] {
+        for patch in sphere(Point3::ORIGIN, I16F16::from_num(radius)).unwrap() {
+            let lattice = Lattice::new(patch.surface(), Steps::hole_free(patch.surface())).unwrap();
+            let r = f64::from(radius);
+            lattice.for_each(|p| {
+                let square = [p.x, p.y, p.z].map(|c| f64::from(c) * f64::from(c)).iter().sum::<f64>();
+                assert!((square.sqrt() - r).abs() <= 3.0_f64.sqrt() / 2.0 + 1e-9, "{p:?} of radius {radius}");
+            });
+        }
+    }
+}
+
+/// Weights so extreme that the bound asks for more steps than there are: a typed error, never a coarse lattice.
+#[test]
+fn extreme_weights_are_a_typed_error() {
+    let points = [[0, 0], [0, 300], [300, 0], [300, 300]].map(|[x, y]| Point3::from_ints(x, y, 0));
+    let weights = [1, i32::MAX, 1, i32::MAX].map(I16F16::from_bits);
+    let net = RationalTensorNet::new(TensorNet::new((1, 1), &points).unwrap(), &weights).unwrap();
+    let net = SurfaceNet::RationalTensor(net);
+    let steps = Steps::hole_free(net);
+    assert!(Lattice::new(net, steps).is_err(), "{steps:?}");
 }

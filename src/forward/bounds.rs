@@ -43,7 +43,11 @@ pub(super) fn unit(form: &Form<'_>) -> u128 {
 
 impl<'f, 'a> Axis<'f, 'a> {
     pub(super) fn new(form: &'f Form<'a>, axis: usize) -> Self {
-        let coordinate = |p: &crate::geometry::Point3| [p.x, p.y, p.z].map(|c| c.bits())[axis];
+        let coordinate = |p: &crate::geometry::Point3| match axis {
+            0 => p.x.bits(),
+            1 => p.y.bits(),
+            _ => p.z.bits(),
+        };
         let low = form.points().iter().map(coordinate).min().unwrap_or(0);
         let high = form.points().iter().map(coordinate).max().unwrap_or(0);
         Self { form, axis, low, high, shift: weight_shift(form) }

@@ -30,6 +30,8 @@ pub(crate) trait Kernel: Copy {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Accumulate<W> {
     shift: usize,
+    /// Only lanes ask.
+    #[cfg(target_pointer_width = "64")]
     integer_bits: u32,
     word: core::marker::PhantomData<W>,
 }
@@ -54,7 +56,12 @@ impl<W: Word> Accumulate<W> {
     /// The kernel where N is a power of two and `integer_bits`, sign included, fit above it.
     pub(crate) fn of(budget: &Budget, integer_bits: u32) -> Option<Self> {
         let shift = budget.dyadic().filter(|f| f + integer_bits <= <W as Word>::BITS)?;
-        Some(Self { shift: shift as usize, integer_bits, word: core::marker::PhantomData })
+        Some(Self {
+            shift: shift as usize,
+            #[cfg(target_pointer_width = "64")]
+            integer_bits,
+            word: core::marker::PhantomData,
+        })
     }
 }
 
@@ -75,6 +82,7 @@ impl<W: Word> Kernel for Accumulate<W> {
         (e >> self.shift).as_()
     }
 
+    #[cfg(target_pointer_width = "64")]
     #[inline(always)]
     fn bits(&self) -> Option<(u32, u32)> {
         Some((self.shift as u32, self.integer_bits))

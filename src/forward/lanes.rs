@@ -182,7 +182,7 @@ mod tests {
     /// All ways to fill lanes: n = 256 and 10 to 16 integer bits drop none to two bits or take the wide kind.
     #[test]
     fn lanes_give_the_points_of_the_plain_walk() {
-        for (size, fraction) in [(3, 0), (200, 0), (1000, 0), (30_000, 0), (200, 4), (32_767, 1)] {
+        for (size, fraction) in [(3, 0), (201, 0), (1001, 0), (30_001, 0), (201, 4), (32_701, 1)] {
             for degree in 1..=5 {
                 let points = net((degree + 1) * (degree + 1), size, fraction);
                 let triangle = TriangleNet::new(degree, &points[..(degree + 1) * (degree + 2) / 2]).unwrap();

@@ -56,9 +56,9 @@ impl Steps {
     }
 
     /// Counts that come from a net, at least 1. Those of a polynomial are legal because 8 · 2 · 32767 < 2^24; those
-    /// of a rational net with extreme weights are capped at 2^24, which no accumulator takes at such weights.
+    /// of a rational net with extreme weights that are not become 2^24 + 1, which no lattice takes.
     fn of_net(r: u128, s: u128) -> Self {
-        let clamp = |n: u128| n.clamp(1, MAX_STEPS.into()) as u32;
+        let clamp = |n: u128| n.clamp(1, u128::from(MAX_STEPS) + 1) as u32;
         Self { r: clamp(r), s: clamp(s) }
     }
 
@@ -179,5 +179,5 @@ fn tensor_counts(form: &Form<'_>) -> Steps {
         let count = |other: u128| Some(k.checked_div(unit.checked_mul(other)?)? + 1);
         Some(Steps::of_net(count(b)?, count(a)?))
     };
-    counts().unwrap_or(Steps { r: MAX_STEPS, s: MAX_STEPS })
+    counts().unwrap_or(Steps { r: MAX_STEPS + 1, s: MAX_STEPS + 1 })
 }

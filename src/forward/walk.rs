@@ -150,36 +150,16 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
         if self.position.1 > self.last_row {
             return visitor;
         }
-        let mut lanes = if LANES > 1 && V::POINTS_ONLY { self.kernel.bits().map(Lanes::new) } else { None };
-        let mut chunk = Chunk::default();
+        if LANES > 1
+            && V::POINTS_ONLY
+            && let Some(bits) = self.kernel.bits()
+        {
+            return self.visit_in_lanes(visitor, Lanes::new(bits));
+        }
         loop {
-            let (mut i, j) = self.position;
-            if let Some(lanes) = &mut lanes
-                && self.last_in_row - i >= CHUNK as u32
-            {
-                lanes.start(&self.row.e, &self.row.d);
-                while i <= self.last_in_row {
-                    lanes.next(&mut chunk);
-                    let count = (self.last_in_row - i + 1).min(CHUNK as u32);
-                    for (i, point) in (i..).zip(chunk.points(count)) {
-                        visitor = visitor.point(&At { i, j, point, row: &self.row, weights: &self.weights });
-                    }
-                    i += count;
-                }
-            } else if visitor.wants_row(j) {
-                let mut row = self.row;
-                loop {
-                    let point = core::array::from_fn(|axis| self.kernel.read(row.x[axis], row.e[axis]));
-                    visitor = visitor.point(&At { i, j, point, row: &row, weights: &self.weights });
-                    if i == self.last_in_row {
-                        break;
-                    }
-                    i += 1;
-                    row.step(&self.kernel);
-                    if V::TANGENTS {
-                        row.step_tangent();
-                    }
-                }
+            let j = self.position.1;
+            if visitor.wants_row(j) {
+                visitor = self.visit_row(visitor);
             }
             if j == self.last_row {
                 return visitor;
@@ -190,6 +170,54 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
             } else {
                 self.start_row::<false>();
             }
+        }
+    }
+
+    /// Visits what is left of the row.
+    #[inline(always)]
+    fn visit_row<V: Visit>(&self, mut visitor: V) -> V {
+        let mut row = self.row;
+        let (mut i, j) = self.position;
+        loop {
+            let point = core::array::from_fn(|axis| self.kernel.read(row.x[axis], row.e[axis]));
+            visitor = visitor.point(&At { i, j, point, row: &row, weights: &self.weights });
+            if i == self.last_in_row {
+                return visitor;
+            }
+            i += 1;
+            row.step(&self.kernel);
+            if V::TANGENTS {
+                row.step_tangent();
+            }
+        }
+    }
+
+    /// [`visit`](Self::visit) for visitors of points only, with a kernel that has [`Kernel::bits`].
+    #[inline]
+    fn visit_in_lanes<V: Visit>(mut self, mut visitor: V, mut lanes: Lanes<R>) -> V {
+        let mut chunk = Chunk::default();
+        loop {
+            let (mut i, j) = self.position;
+            if !visitor.wants_row(j) {
+                // Nothing to do.
+            } else if self.last_in_row - i < CHUNK as u32 {
+                visitor = self.visit_row(visitor);
+            } else {
+                lanes.start(&self.row.e, &self.row.d);
+                while i <= self.last_in_row {
+                    lanes.next(&mut chunk);
+                    let count = (self.last_in_row - i + 1).min(CHUNK as u32);
+                    for (i, point) in (i..).zip(chunk.points(count)) {
+                        visitor = visitor.point(&At { i, j, point, row: &self.row, weights: &self.weights });
+                    }
+                    i += count;
+                }
+            }
+            if j == self.last_row {
+                return visitor;
+            }
+            self.next_row();
+            self.start_row::<false>();
         }
     }
 
