@@ -30,9 +30,10 @@
 //! 1. [`num`]: the numbers and the one rounding rule, half up.
 //! 2. [`geometry`]: points, boxes, affine maps, views by angle, perspective.
 //! 3. [`patch`]: control nets of curves, triangles and tensor products, degrees 1 to 8, polynomial and rational.
+//!    Ways in: Hermite, Coons, B-splines and NURBS, quadrics.
 //! 4. [`forward`]: the point engine. Every lattice point is `floor(S + 1/2)` of the exact surface, by proof.
-//! 5. [`render`]: bands of pixels with depth test and Lambert shading, the same bytes for every band height.
-//! 6. `graphics`: drawables and colours (feature `graphics`, default).
+//! 5. [`render`]: bands of pixels with depth test, shaded or as lines, the same bytes for every band height.
+//! 6. `graphics`: drawables, strokes of curves, and colours (feature `graphics`, default).
 //! 7. `reference`: the independent `f64` oracle to check scenes against (feature `std`, hosts only).
 //!
 //! # Features

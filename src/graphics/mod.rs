@@ -8,7 +8,13 @@
 //!   pixel wide or thick; `into_styled` does with the feature `styled`.
 //! * [`Material`] turns levels into colours: every RGB and grey type, and `BinaryColor` by ordered dithering.
 //!
+//! * [`Ramps`] mixes colours along a ramp per patch.
+//!
 //! Nothing outside the target's bounding box is ever emitted, and no pixel twice.
+//!
+#![doc = include_str!("../../docs/img/curves.md")]
+//!
+//! *Strokes of 1, 3, 8 and 12 pixels; the ring is four rational arcs.*
 
 mod band;
 mod colour;
@@ -21,9 +27,8 @@ mod styled;
 mod tiles;
 
 pub use colour::{Material, Mix, Ramps, Shade};
-pub use model::Model;
-
 pub use curve::{AnyCurveNet, BezierCurve, CurvePixels};
+pub use model::Model;
 pub use stroke::{MAX_STROKE_WIDTH, Stroke};
 
 /// The `embedded-graphics-core` that this crate was built with.

@@ -28,6 +28,10 @@
 //! # Ok::<(), embedded_surfaces::patch::NetError>(())
 //! ```
 
+#![doc = include_str!("../../docs/img/shapes.md")]
+//!
+//! *Rational patches with the weights 1, 1, 2: [`sphere`], [`cylinder`], [`cone`], [`torus`].*
+
 mod convert;
 mod coons;
 mod curve;

@@ -3,6 +3,10 @@
 //! In come patches in screen coordinates and the caller's buffers; out go rectangles of shaded pixels. Nothing here
 //! knows a colour type: a [`Paint`] turns a grey level at a pixel into one.
 //!
+#![doc = include_str!("../../docs/img/styles.md")]
+//!
+//! *[`Style`]: shaded, glossy, depth-cued, wire with hidden lines removed, control net, normals.*
+//!
 //! * [`Scene`]: patches, light and style, checked once. [`Scene::draw`] draws them into a [`Tile`].
 //! * [`Tile`]: a rectangle of pixels in the caller's colour and depth buffers.
 //! * [`Frame`]: pulls a picture band by band ([`Frame::next_band`]); the caller sends each band away, by DMA if it
