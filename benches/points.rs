@@ -36,7 +36,7 @@ struct Sum(i32);
 impl Sink for Sum {
     #[inline(always)]
     fn point(&mut self, _: u32, _: u32, x: i32, y: i32, z: i32) {
-        self.0 = self.0.wrapping_add(x).wrapping_add(y).wrapping_add(z);
+        self.0 = self.0.wrapping_add(x.wrapping_add(y).wrapping_add(z));
     }
 }
 
@@ -74,10 +74,11 @@ macro_rules! rows {
     };
 }
 
-const ROWS: [Row; 10] = rows! {
+const ROWS: [Row; 11] = rows! {
     "exact, for_each": exact,
     "exact, iterator": exact_iterator,
-    "f32 forward differences, row order": peers::forward_f32,
+    "f32 forward differences, row order, arrays": peers::forward_f32,
+    "f32 forward differences, row order, by hand": peers::forward_f32_by_hand,
     "f32 forward differences, 4 rows in lockstep": peers::forward_f32_rows::<4, _>,
     "f32 forward differences, 8 rows in lockstep": peers::forward_f32_rows::<8, _>,
     "f32 forward differences, 4 points of a row in lockstep": peers::forward_f32_lanes::<4, _>,

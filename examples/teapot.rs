@@ -24,10 +24,9 @@ use std::path::PathBuf;
 /// Draw the Utah teapot in bands.
 #[derive(Parser)]
 struct Arguments {
-    /// Width and height of the picture in pixels
-    #[arg(long, num_args = 2, value_names = ["WIDTH", "HEIGHT"], default_values_t = [320, 240],
-          value_parser = clap::value_parser!(u32).range(1..=4096))]
-    size: Vec<u32>,
+    /// Width and height of the picture in pixels: 320x240, or two numbers
+    #[arg(long, num_args = 1..=2, value_names = ["WIDTH", "HEIGHT"], default_value = "320x240")]
+    size: Vec<String>,
     /// Rows of a band
     #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..))]
     band: u32,
@@ -79,7 +78,7 @@ const BACKGROUND: Rgb888 = Rgb888::new(24, 28, 44);
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = Arguments::parse();
-    let (width, height) = (arguments.size[0], arguments.size[1]);
+    let (width, height) = size(&arguments.size)?;
     let view = View { tilt: Angle::from_degrees(arguments.tilt), spin: Angle::from_degrees(arguments.spin) };
     let to_screen = view.fit(teapot::vertices(), width, height, I16F16::from_num(0.92))?;
     let patches = teapot::patches(&to_screen)?;
@@ -91,6 +90,14 @@ fn main() -> Result<(), Box<dyn Error>> {
             run(&arguments, &seen)
         }
     }
+}
+
+/// `["320x240"]` or `["320", "240"]`, each 1 ..= 4096.
+fn size(arguments: &[String]) -> Result<(u32, u32), Box<dyn Error>> {
+    let text = arguments.join("x");
+    let side = |side: &str| side.parse().ok().filter(|n| (1..=4096).contains(n));
+    let sides = text.split_once('x').and_then(|(width, height)| Some((side(width)?, side(height)?)));
+    sides.ok_or_else(|| format!("--size {text}: not WIDTHxHEIGHT with sides of 1 to 4096").into())
 }
 
 /// The eye above the middle of the screen, so many diagonals of the model's box away.
@@ -105,7 +112,7 @@ fn eye(patches: &[BicubicPatch], (width, height): (u32, u32), diagonals: f64) ->
 
 /// Draws the picture, then counts what was hit and missed.
 fn run<S: Surface>(arguments: &Arguments, patches: &[S]) -> Result<(), Box<dyn Error>> {
-    let (width, height) = (arguments.size[0], arguments.size[1]);
+    let (width, height) = size(&arguments.size)?;
     let area = Area { x: 0, y: 0, width, height };
     let mut display = draw::blank(area, BACKGROUND);
     let scene = Scene::new(patches, Light::default(), arguments.style.into())?;

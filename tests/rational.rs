@@ -150,12 +150,9 @@ fn a_quarter_circle_is_the_true_circle_rounded() {
         assert_eq!(lattice.budget().scale % 2, 0); // the largest weight, 2
         let mut count = 0;
         for p in &lattice {
-            // Distance to the circle at most √2/2: (|p| − r)² ≤ 1/2.
-            let square = i64::from(p.x).pow(2) + i64::from(p.y).pow(2);
-            let (inner, outer) = (2 * i64::from(radius) - 2, 2 * i64::from(radius) + 2);
-            assert!(4 * square >= inner * inner && 4 * square <= outer * outer, "{p:?}");
-            let exact = 2 * square as i128 - 2 * i128::from(radius).pow(2); // = 2(|p|−r)(|p|+r)
-            assert!(exact.abs() <= (1.5 * 2.0 * f64::from(radius)) as i128 + 1, "{p:?}");
+            // Each coordinate is within 1/2 of a point of the circle.
+            let distance = (f64::from(p.x).hypot(f64::from(p.y)) - f64::from(radius)).abs();
+            assert!(distance <= 0.5_f64.sqrt() + 1e-9, "{p:?}");
             count += 1;
         }
         assert!(lattice.unit_steps().is_ok() && count > i32::from(radius));

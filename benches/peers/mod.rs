@@ -113,13 +113,82 @@ fn next_row(table: &mut [[[f32; 4]; 4]; 4]) {
     }
 }
 
-/// Forward differences in row order; x, y and z of one point share a vector.
+/// x, y and z of one point in a vector.
+#[cfg(target_arch = "x86_64")]
+mod quad {
+    use std::arch::x86_64::{__m128, _mm_add_ps, _mm_cvttps_epi32, _mm_loadu_ps, _mm_storeu_si128};
+
+    #[derive(Clone, Copy)]
+    pub(super) struct Quad(__m128);
+
+    impl Quad {
+        #[inline(always)]
+        pub(super) fn new(values: [f32; 4]) -> Self {
+            // SAFETY: four floats are there to be read.
+            Self(unsafe { _mm_loadu_ps(values.as_ptr()) })
+        }
+
+        #[inline(always)]
+        pub(super) fn plus(self, other: Self) -> Self {
+            // SAFETY: every x86-64 has SSE.
+            Self(unsafe { _mm_add_ps(self.0, other.0) })
+        }
+
+        #[inline(always)]
+        pub(super) fn truncate(self) -> [i32; 4] {
+            let mut out = [0; 4];
+            // SAFETY: there is room for four integers.
+            unsafe { _mm_storeu_si128(out.as_mut_ptr().cast(), _mm_cvttps_epi32(self.0)) };
+            out
+        }
+    }
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+mod quad {
+    #[derive(Clone, Copy)]
+    pub(super) struct Quad([f32; 4]);
+
+    impl Quad {
+        #[inline(always)]
+        pub(super) fn new(values: [f32; 4]) -> Self {
+            Self(values)
+        }
+
+        #[inline(always)]
+        pub(super) fn plus(self, other: Self) -> Self {
+            Self(core::array::from_fn(|axis| self.0[axis] + other.0[axis]))
+        }
+
+        #[inline(always)]
+        pub(super) fn truncate(self) -> [i32; 4] {
+            self.0.map(super::truncate)
+        }
+    }
+}
+
+/// Forward differences in row order, in vector instructions by hand: LLVM makes slower ones of arrays.
+#[inline(always)]
+pub(crate) fn forward_f32_by_hand<S: Sink + ?Sized>(cubic: &Cubic, sink: &mut S) {
+    let mut table = cubic.differences;
+    for j in 0..cubic.n + 1 {
+        let [mut x, mut d1, mut d2, d3] = table[0].map(quad::Quad::new);
+        for i in 0..cubic.n - j + 1 {
+            let [px, py, pz, _] = x.truncate();
+            sink.point(i, j, px, py, pz);
+            (x, d1, d2) = (x.plus(d1), d1.plus(d2), d2.plus(d3));
+        }
+        next_row(&mut table);
+    }
+}
+
+/// Forward differences in row order, in arrays that the compiler may turn into vectors.
 #[inline(always)]
 pub(crate) fn forward_f32<S: Sink + ?Sized>(cubic: &Cubic, sink: &mut S) {
     let mut table = cubic.differences;
-    for j in 0..=cubic.n {
+    for j in 0..cubic.n + 1 {
         let [mut x, mut d1, mut d2, d3] = table[0];
-        for i in 0..=cubic.n - j {
+        for i in 0..cubic.n - j + 1 {
             sink.point(i, j, truncate(x[0]), truncate(x[1]), truncate(x[2]));
             for axis in 0..4 {
                 x[axis] += d1[axis];
@@ -195,20 +264,13 @@ pub(crate) fn forward_f32_lanes<const L: usize, S: Sink + ?Sized>(cubic: &Cubic,
     for j in 0..=cubic.n {
         let mut lanes: [Lanes<L>; 3] = core::array::from_fn(|axis| {
             let [x, d1, d2, d3] = table[0].map(|d| d[axis]);
-            // Differences of stride L at i: LΔ + C(L,2)Δ² + C(L,3)Δ³, and L²(Δ² + (L−1)Δ³), L³Δ³.
-            let at = |c: usize| {
+            // Newton's form at c, then differences of stride L: LΔ + C(L,2)Δ² + C(L,3)Δ³, L²(Δ² + (L−1)Δ³), L³Δ³.
+            let of = |c: usize| {
                 let c = c as f32;
-                (
-                    x + c * (d1 + (c - 1.0) * (0.5 * d2 + (c - 2.0) / 6.0 * d3)),
-                    d1 + c * (d2 + (c - 1.0) * 0.5 * d3),
-                    d2 + c * d3,
-                )
-            };
-            let of = |c| {
-                let (x, d1, d2) = at(c);
-                let (first, second) =
-                    (l * (d1 + (l - 1.0) * (0.5 * d2 + (l - 2.0) / 6.0 * d3)), l * l * (d2 + (l - 1.0) * d3));
-                (x, first, second)
+                let here = x + c * (d1 + (c - 1.0) * (0.5 * d2 + (c - 2.0) / 6.0 * d3));
+                let (d1, d2) = (d1 + c * (d2 + (c - 1.0) * 0.5 * d3), d2 + c * d3);
+                let first = l * (d1 + (l - 1.0) * (0.5 * d2 + (l - 2.0) / 6.0 * d3));
+                (here, first, l * l * (d2 + (l - 1.0) * d3))
             };
             Lanes {
                 x: core::array::from_fn(|c| of(c).0),
@@ -254,7 +316,7 @@ pub(crate) fn horner_fixed<S: Sink + ?Sized>(cubic: &Cubic, sink: &mut S) {
     }
 }
 
-/// De Casteljau at each point: 18 combinations of three values per axis... of degree 3, 2, 1.
+/// De Casteljau at each point: 6, 3 and 1 combinations of three values per axis.
 #[inline(always)]
 pub(crate) fn de_casteljau_fixed<S: Sink + ?Sized>(cubic: &Cubic, sink: &mut S) {
     let net: [[I16F16; 10]; 3] = core::array::from_fn(|axis| cubic.net.map(|p| I16F16::from_num(p[axis])));

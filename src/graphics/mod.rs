@@ -30,6 +30,9 @@ pub use colour::{Material, Mix, Ramps, Shade};
 pub use curve::{AnyCurveNet, BezierCurve, CurvePixels};
 pub use model::Model;
 pub use stroke::{MAX_STROKE_WIDTH, Stroke};
+#[cfg(feature = "styled")]
+#[cfg_attr(docsrs, doc(cfg(feature = "styled")))]
+pub use styled::{ModelStyle, Patches};
 
 /// The `embedded-graphics-core` that this crate was built with.
 pub use embedded_graphics_core;

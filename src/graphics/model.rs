@@ -26,9 +26,9 @@ use embedded_graphics_core::primitives::Rectangle;
 /// ```
 #[derive(Debug)]
 pub struct Model<'a, S, C, const BUFFER: usize = 1024> {
-    scene: Scene<'a, S>,
-    material: Material<C>,
-    offset: Point,
+    pub(super) scene: Scene<'a, S>,
+    pub(super) material: Material<C>,
+    pub(super) offset: Point,
 }
 
 impl<S, C: Copy, const BUFFER: usize> Clone for Model<'_, S, C, BUFFER> {

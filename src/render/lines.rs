@@ -5,6 +5,8 @@ use super::pen::{Liner, normal_inside};
 use super::plan::Plan;
 use super::style::{Lines, Style};
 use super::tile::{Paint, Tile};
+#[cfg(feature = "styled")]
+use crate::forward::Budget;
 use crate::forward::{Form, Fraction, LatticeError, row_count};
 use crate::geometry::Point3;
 use crate::num::{Coord, I16F16};
@@ -33,6 +35,24 @@ pub(super) fn family<'a>(net: SurfaceNet<'a>, lines: Lines, turn: u8) -> Result<
     } else {
         Ok((Plan::of(form.turned(turn, (along, count)), false)?, 1))
     }
+}
+
+/// Checks that [`family`] succeeds for every number of lines: at its most steps with its longest step.
+#[cfg(feature = "styled")]
+pub(super) fn any_family(net: SurfaceNet<'_>) -> Result<(), LatticeError> {
+    for turn in 0..families(net) {
+        let form = Form::surface(net, (1, 1)).turned(turn, (1, 1));
+        let along = row_count(&form);
+        let most = along.saturating_add(u8::MAX.into());
+        let (few, many) = if net.is_triangle() { ((along, along), (most, most)) } else { ((along, 1), (along, 255)) };
+        let longest = Budget::of(&form.turned(turn, few))?.largest_step;
+        let budget = Budget::of(&form.turned(turn, many))?;
+        if budget.scale.checked_mul(2 * u128::from(longest) + 1).is_none() {
+            let (degrees, fraction_bits) = (form.degrees, budget.fraction_bits);
+            return Err(LatticeError::Budget { degrees, steps: many, fraction_bits, bits: 129 });
+        }
+    }
+    Ok(())
 }
 
 /// How many families of iso-parametric curves a patch has.

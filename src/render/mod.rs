@@ -51,6 +51,8 @@ mod tests;
 pub use frame::{Band, Frame, Statistics};
 pub use light::Light;
 pub use scene::Scene;
+#[cfg(feature = "styled")]
+pub(crate) use scene::fits_every_style;
 pub use style::{Gloss, Lines, Style};
 pub use tile::{Area, Fragment, Paint, Tile};
 

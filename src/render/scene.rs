@@ -2,6 +2,8 @@
 
 use super::depth::DepthWindow;
 use super::light::Light;
+#[cfg(feature = "styled")]
+use super::lines::any_family;
 use super::lines::{LineDrawing, families, family};
 use super::pen::{Occluder, Pen};
 use super::plan::fill_plans;
@@ -175,6 +177,18 @@ impl<'a, S: Surface> Scene<'a, S> {
             plan.walk(Occluder { tile, window: self.window, fraction });
         }
     }
+}
+
+/// Checks that patches can be drawn in every style: a later [`Scene::new`] with any of them succeeds.
+#[cfg(feature = "styled")]
+pub(crate) fn fits_every_style<S: Surface>(patches: &[S]) -> Result<(), RenderError> {
+    for (index, patch) in patches.iter().enumerate() {
+        let net = patch.surface();
+        let fits =
+            fill_plans(net, Style::Shaded).and_then(|_| fill_plans(net, Style::Flat)).and_then(|_| any_family(net));
+        fits.map_err(|error| RenderError::Patch { index, error })?;
+    }
+    Ok(())
 }
 
 /// Every lattice that the style will need fits the engine.
