@@ -127,8 +127,7 @@ impl<'a> BezierCurve<'a> {
     ///
     /// # Errors
     /// [`LatticeError`] where the lattice does not fit the engine: [`Budget`](LatticeError::Budget) for (2K+1)·N above
-    /// 128 bits, [`Steps`](LatticeError::Steps) for a step count above 2^24, and
-    /// [`LongStep`](LatticeError::LongStep) for a bound B above that, which only rational curves have.
+    /// 128 bits, [`Steps`](LatticeError::Steps) for a step count above 2^24, which only rational curves ask for.
     pub fn new(curve: impl Into<AnyCurveNet<'a>>) -> Result<Self, LatticeError> {
         let net = curve.into();
         let plan = PlanePlan::of((net.points(), net.weights()))?;
