@@ -41,7 +41,8 @@ pub enum RowStep {
 /// * [`points`](Self::points): the same as an iterator; `fold` and `for_each` on it are the fast path too.
 ///
 /// Stack: 3·(d+1)²·w/8 bytes plus 6·(d+1)·w/8, with d the larger degree rounded up to 3, 5 or 8 and w the
-/// accumulator's bits: 0.6 KB for bicubics in `i64`, 4.8 KB at most.
+/// accumulator's bits: 0.6 KB for bicubics in `i64`, 4.8 KB at most; a third more for rational nets, and 0.8 KB for
+/// the lanes of 64-bit hosts.
 ///
 /// ```
 /// use embedded_surfaces::forward::{Lattice, Steps};

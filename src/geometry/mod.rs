@@ -41,9 +41,9 @@ pub enum GeometryError {
         /// Height of the screen in pixels.
         height: u32,
     },
-    /// A point at or behind the eye: distance + z is not positive.
+    /// A point at or behind the eye: distance + z, or the distance itself, is not positive.
     BehindEye {
-        /// distance + z of the point, in whole units, rounded down.
+        /// The smaller of the two, in whole units, rounded down.
         units: i64,
     },
 }
@@ -57,7 +57,7 @@ impl core::fmt::Display for GeometryError {
             Self::MatrixOverflow => write!(f, "a matrix entry does not fit 32 integer bits"),
             Self::NothingToFit => write!(f, "the points to fit are none or all the same on the screen"),
             Self::EmptyScreen { width, height } => write!(f, "nothing fits a screen of {width} x {height} pixels"),
-            Self::BehindEye { units } => write!(f, "a point lies behind the eye: distance + z is near {units}"),
+            Self::BehindEye { units } => write!(f, "a point lies behind the eye: its distance is near {units}"),
         }
     }
 }

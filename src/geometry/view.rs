@@ -124,12 +124,12 @@ impl Perspective {
     /// ```
     ///
     /// # Errors
-    /// [`GeometryError::BehindEye`] where D + z ≤ 0; [`GeometryError::OutOfRange`] where the image or the weight
+    /// [`GeometryError::BehindEye`] where D + z ≤ 0 or D ≤ 0; [`GeometryError::OutOfRange`] where the image or the weight
     /// leaves the legal range.
     pub fn project(&self, point: &Point3<I16F16>) -> Result<(Point3<I16F16>, I16F16), GeometryError> {
         let weight = self.distance.bits() + point.z.bits();
-        if weight <= 0 {
-            return Err(GeometryError::BehindEye { units: weight >> 16 });
+        if weight <= 0 || self.distance <= 0 {
+            return Err(GeometryError::BehindEye { units: weight.min(self.distance.bits()) >> 16 });
         }
         let map = |axis, c: I16F16, centre: I16F16| {
             let product = i128::from(c.bits() - centre.bits()) * i128::from(self.distance.bits());
