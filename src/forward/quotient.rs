@@ -90,36 +90,30 @@ fn narrow<W: Word>(values: [W; 4]) -> [i64; 4] {
 /// How many units x must lose so that T = t − k·D comes into (−D/2, D/2]: negative where it must gain.
 ///
 /// |k| ≤ K < 2^(ladder+1).
-#[inline]
+#[inline(always)]
 fn units_off<W: Word>(t: W, d: W, ladder: u32) -> i32 {
     let (floor, ceil) = (d >> 1, d.wrapping_plus(W::ONE) >> 1);
-    let least = W::ZERO.wrapping_minus(ceil);
-    let (mut rest, mut units) = (t, 0);
-    if t > floor {
-        for bit in (0..=ladder).rev() {
-            let next = rest.wrapping_minus(d << bit as usize);
-            if next > least {
-                rest = next;
-                units += 1 << bit;
-            }
+    if t > floor || t <= W::ZERO.wrapping_minus(ceil) { climb(t, d, ladder) } else { 0 }
+}
+
+/// [`units_off`] where it is not 0; out of line, because it is long for wide words.
+#[inline(never)]
+fn climb<W: Word>(t: W, d: W, ladder: u32) -> i32 {
+    let least = W::ZERO.wrapping_minus(d.wrapping_plus(W::ONE) >> 1);
+    let (mut rest, mut units, loses) = (t, 0, t > least);
+    for bit in (0..=ladder).rev() {
+        let part = d << bit as usize;
+        let next = if loses { rest.wrapping_minus(part) } else { rest.wrapping_plus(part) };
+        if (next > least) == loses {
+            rest = next;
+            units += 1 << bit;
         }
-        units
-    } else if t <= least {
-        for bit in (0..=ladder).rev() {
-            let next = rest.wrapping_plus(d << bit as usize);
-            if next <= least {
-                rest = next;
-                units += 1 << bit;
-            }
-        }
-        -1 - units
-    } else {
-        0
     }
+    if loses { units } else { -1 - units }
 }
 
 /// `t ← t − units·d`, by shifted additions.
-#[inline]
+#[inline(never)]
 fn subtract<W: Word, const R: usize>(t: &mut [W; R], d: &[W; R], units: i32) {
     let mut left = units.unsigned_abs();
     while left != 0 {
@@ -153,12 +147,12 @@ impl<W: Word, const R: usize> QuotientWalker<W, R> {
     pub(crate) fn new(form: &Form<'_>, budget: &Budget) -> Self {
         let (drop, fraction_bits) = (16 - budget.fraction_bits, budget.fraction_bits);
         let weight = |a, b| form.weight_bits(a, b) >> budget.weight_shift;
-        let d: Table<W, R> = difference_table(form, |a, b| weight(a, b) << fraction_bits);
+        let d: Table<W, R> = difference_table(form, &|a, b| weight(a, b) << fraction_bits);
         let zero = [W::ZERO; R];
         let mut walker = Self {
             x: [0; 3],
             t: core::array::from_fn(|axis| {
-                difference_table(form, |a, b| weight(a, b) * (form.bits(axis, a, b) >> drop))
+                difference_table(form, &|a, b| weight(a, b) * (form.bits(axis, a, b) >> drop))
             }),
             d,
             row: Row { x: [0; 3], t: [zero; 3], d: zero, across_t: [zero; 3], across_d: zero },
@@ -175,6 +169,7 @@ impl<W: Word, const R: usize> QuotientWalker<W, R> {
     }
 
     /// Turns the tables of A into those of T at the first point.
+    #[inline(never)]
     fn place(&mut self, form: &Form<'_>) {
         for axis in 0..3 {
             // A corner of the net is on the surface.
@@ -218,7 +213,7 @@ impl<W: Word, const R: usize> QuotientWalker<W, R> {
         }
     }
 
-    #[inline]
+    #[inline(never)]
     fn next_row(&mut self) {
         self.t.iter_mut().chain([&mut self.d]).for_each(step_s);
         self.settle_table();

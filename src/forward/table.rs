@@ -16,7 +16,7 @@ pub(crate) type Table<W, const R: usize> = [[W; R]; R];
 #[inline(never)]
 pub(crate) fn difference_table<W: Word, const R: usize>(
     form: &Form<'_>,
-    coefficient: impl Fn(usize, usize) -> i64,
+    coefficient: &dyn Fn(usize, usize) -> i64,
 ) -> Table<W, R> {
     let (m, h) = (form.degrees.0.min(R - 1), form.degrees.1.min(R - 1));
     let row_end = |b: usize| form.last_row_entry(b).min(R - 1);
@@ -47,6 +47,7 @@ pub(crate) fn difference_table<W: Word, const R: usize>(
 }
 
 /// Moves a table one step along r: Δ^a ← Δ^a + Δ^(a+1).
+#[inline(never)]
 pub(crate) fn step_r<W: Word, const R: usize>(t: &mut Table<W, R>) {
     for row in t {
         step(row);
@@ -73,11 +74,13 @@ pub(crate) fn step<W: Word, const R: usize>(d: &mut [W; R]) {
 }
 
 /// Differences over steps of two instead of one, in both directions: sample at 0, 2, 4, … and difference anew.
+#[inline(never)]
 pub(crate) fn double_steps<W: Word, const R: usize>(t: &mut Table<W, R>) {
     t.iter_mut().for_each(double);
     each_column(t, R - 1, |_, column| double(column));
 }
 
+#[inline(never)]
 fn double<W: Word, const R: usize>(d: &mut [W; R]) {
     let (mut here, mut samples) = (*d, [W::ZERO; R]);
     for sample in &mut samples {

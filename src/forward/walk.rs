@@ -79,7 +79,7 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
     pub(crate) fn new(kernel: K, form: &Form<'_>, budget: &Budget) -> Self {
         let zero = K::Word::ZERO;
         let drop = 16 - budget.fraction_bits;
-        let table = |axis| difference_table(form, |a, b| form.bits(axis, a, b) >> drop);
+        let table = |axis| difference_table(form, &|a, b| form.bits(axis, a, b) >> drop);
         let mut walker = Self {
             kernel,
             table: core::array::from_fn(table),
@@ -107,16 +107,21 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
             let e = phi.wrapping_plus(scale >> 1).wrapping_minus(scale.wrapping_mul_i64(x.into()));
             let (mut x, mut e) = self.kernel.start(x, e);
             if form.centred {
-                // From (0, 0) of the lattice of half steps to (1, 1), then two half steps at a time.
-                let table = &mut self.table[axis];
-                self.kernel.advance(&mut x, &mut e, table[0][1]);
-                step_r(table);
-                self.kernel.advance(&mut x, &mut e, table[1][0]);
-                step_s(table);
-                double_steps(table);
+                self.move_to_centre(axis, &mut x, &mut e);
             }
             (self.start.0[axis], self.start.1[axis]) = (x, e);
         }
+    }
+
+    /// From (0, 0) of the lattice of half steps to (1, 1), then two half steps at a time.
+    #[inline(never)]
+    fn move_to_centre(&mut self, axis: usize, x: &mut i32, e: &mut K::Word) {
+        let Some(table) = self.table.get_mut(axis) else { return };
+        self.kernel.advance(x, e, table[0][1]);
+        step_r(table);
+        self.kernel.advance(x, e, table[1][0]);
+        step_s(table);
+        double_steps(table);
     }
 
     #[inline(always)]
