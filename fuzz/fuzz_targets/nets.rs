@@ -225,6 +225,8 @@ fn assert_exact(net: SurfaceNet<'_>, (r, s): (u32, u32), p: LatticePoint) {
     let exact = match net {
         SurfaceNet::Triangle(t) => Barycentric::new(p.i, p.j, r - p.i - p.j).map(|at| t.eval(at)),
         SurfaceNet::Tensor(t) => Parameter::new(p.i, r).and_then(|i| Ok(t.eval(i, Parameter::new(p.j, s)?))),
+        SurfaceNet::RationalTriangle(t) => Barycentric::new(p.i, p.j, r - p.i - p.j).map(|at| t.eval(at)),
+        SurfaceNet::RationalTensor(t) => Parameter::new(p.i, r).and_then(|i| Ok(t.eval(i, Parameter::new(p.j, s)?))),
     };
     // Steps beyond 2^16 have no parameter.
     let Ok(exact) = exact else { return };
@@ -287,8 +289,8 @@ fn tensor<const M: usize, const H: usize>(u: &mut Unstructured<'_>) -> Result<()
     let weights = core::array::from_fn(|i| core::array::from_fn(|j| flat[i * H + j]));
     let rational = legal(RationalTensor::new(net, weights));
     if let (Some(net), Some(r), Some(s)) = (rational, parameter(u)?, parameter(u)?) {
-        assert_within(net.eval(r, s), SurfaceNet::Tensor(net.net()));
-        black_box((net.partials(r, s), legal(net.transform(&affine(u)?))));
+        assert_within(net.net().eval(r, s), SurfaceNet::RationalTensor(net.net()));
+        black_box((net.net().partials(r, s), legal(net.transform(&affine(u)?))));
     }
     Ok(())
 }
@@ -305,8 +307,8 @@ fn triangle<const N: usize, const LEN: usize>(u: &mut Unstructured<'_>) -> Resul
     }
     black_box(legal(net.perspective(&perspective(u)?)));
     if let (Some(net), Some(at)) = (legal(RationalTriangle::new(net, weights(u)?)), barycentric(u)?) {
-        assert_within(net.eval(at), SurfaceNet::Triangle(net.net()));
-        black_box((net.partials(at), legal(net.transform(&affine(u)?))));
+        assert_within(net.net().eval(at), SurfaceNet::RationalTriangle(net.net()));
+        black_box((net.net().partials(at), legal(net.transform(&affine(u)?))));
     }
     Ok(())
 }
@@ -320,7 +322,7 @@ fn curve<const K: usize>(u: &mut Unstructured<'_>) -> Result<()> {
     black_box((legal(net.elevate::<9>()), legal(net.elevate::<3>()), net.bounds()));
     black_box((legal(net.transform(&affine(u)?)), legal(net.perspective(&perspective(u)?))));
     if let (Some(net), Some(t)) = (legal(RationalCurve::new(net, weights(u)?)), parameter(u)?) {
-        black_box((net.eval(t), net.derivative(t), legal(net.transform(&affine(u)?))));
+        black_box((net.net().eval(t), net.net().derivative(t), legal(net.transform(&affine(u)?))));
     }
     Ok(())
 }
@@ -336,8 +338,8 @@ fn wide_tensor(u: &mut Unstructured<'_>) -> Result<()> {
     let weights = core::array::from_fn(|i| core::array::from_fn(|j| flat[i * 9 + j]));
     let rational = legal(RationalTensor::new(net, weights));
     if let (Some(net), Some(r), Some(s)) = (rational, parameter(u)?, parameter(u)?) {
-        assert_within(net.eval(r, s), SurfaceNet::Tensor(net.net()));
-        black_box(net.partials(r, s));
+        assert_within(net.net().eval(r, s), SurfaceNet::RationalTensor(net.net()));
+        black_box(net.net().partials(r, s));
     }
     Ok(())
 }
@@ -346,8 +348,8 @@ fn wide_triangle(u: &mut Unstructured<'_>) -> Result<()> {
     let Some(net) = legal(Triangle::<5, 21, I32F32>::new(array(u)?)) else { return Ok(()) };
     black_box((legal(net.round()), legal(net.elevate::<8, 45>()), legal(net.transform(&affine(u)?))));
     if let (Some(net), Some(at)) = (legal(RationalTriangle::new(net, weights(u)?)), barycentric(u)?) {
-        assert_within(net.eval(at), SurfaceNet::Triangle(net.net()));
-        black_box(net.partials(at));
+        assert_within(net.net().eval(at), SurfaceNet::RationalTriangle(net.net()));
+        black_box(net.net().partials(at));
     }
     Ok(())
 }
