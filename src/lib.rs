@@ -46,8 +46,8 @@
 //!
 //! # What it asks of a target
 //! Rust 1.95 or later, 32-bit integers or wider, no FPU, no allocator. Built and run in CI on `thumbv6m`,
-//! `thumbv7m`, `thumbv7em` and `riscv32imc` under emulation. Nothing can panic on a path a user can reach: CI looks
-//! for `core::panicking` in the linked firmware.
+//! `thumbv7m`, `thumbv7em` and `riscv32imc` under emulation. Nothing should panic on a path a user can reach: CI looks
+//! for `core::panicking` in a linked firmware that walks lattices; the rest is fuzzed on a host.
 #![no_std]
 #![forbid(unsafe_code)]
 #![cfg_attr(docsrs, feature(doc_cfg))]

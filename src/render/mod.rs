@@ -16,7 +16,7 @@
 //! (the first of equals, in the order of patches and points), and shade and depth depend on the point alone: bands
 //! of 1 row and the whole frame give the same bytes.
 //!
-//! **No holes.** Patches are sampled at [`Steps::hole_free`](crate::forward::Steps::hole_free): every pixel centre
+//! **No holes.** Patches are sampled by [`Sampling::cheapest`](crate::forward::Sampling::cheapest): every pixel centre
 //! in the lattice's interpolant is hit, also along shared edges of patches, whatever their step counts.
 //!
 //! # Depth
