@@ -63,6 +63,8 @@ pub mod patch;
 
 pub mod forward;
 
+pub mod subdivide;
+
 pub mod render;
 
 #[cfg(feature = "graphics")]

@@ -16,7 +16,7 @@ use crate::num::{Coord, I16F16, I32F32};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Curve<const K: usize, C = I16F16> {
-    pub(super) points: [Point3<C>; K],
+    pub(crate) points: [Point3<C>; K],
 }
 
 /// Degree 2, a parabola.

@@ -139,7 +139,7 @@ impl<'a, C: Coord> TriangleNet<'a, C> {
         Ok(Self { degree: checked, points })
     }
 
-    pub(super) const fn of_checked(degree: usize, points: &'a [Point3<C>]) -> Self {
+    pub(crate) const fn of_checked(degree: usize, points: &'a [Point3<C>]) -> Self {
         Self { degree: degree as u8, points }
     }
 
@@ -168,7 +168,7 @@ impl<'a, C: Coord> TensorNet<'a, C> {
         Ok(Self { degrees: checked, points })
     }
 
-    pub(super) const fn of_checked(degrees: (usize, usize), points: &'a [Point3<C>]) -> Self {
+    pub(crate) const fn of_checked(degrees: (usize, usize), points: &'a [Point3<C>]) -> Self {
         Self { degrees: (degrees.0 as u8, degrees.1 as u8), points }
     }
 

@@ -35,22 +35,22 @@ pub(super) const fn check_weights(weights: &[I16F16]) -> Result<(), NetError> {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RationalCurve<const K: usize, C = I16F16> {
-    net: Curve<K, C>,
-    weights: [I16F16; K],
+    pub(crate) net: Curve<K, C>,
+    pub(crate) weights: [I16F16; K],
 }
 
 /// A rational triangular patch of degree `N` with `LEN` control points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RationalTriangle<const N: usize, const LEN: usize, C = I16F16> {
-    net: Triangle<N, LEN, C>,
-    weights: [I16F16; LEN],
+    pub(crate) net: Triangle<N, LEN, C>,
+    pub(crate) weights: [I16F16; LEN],
 }
 
 /// A rational tensor-product patch of orders `M` × `H`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RationalTensor<const M: usize, const H: usize, C = I16F16> {
-    net: Tensor<M, H, C>,
-    weights: [[I16F16; H]; M],
+    pub(crate) net: Tensor<M, H, C>,
+    pub(crate) weights: [[I16F16; H]; M],
 }
 
 impl<const K: usize, C: Coord> RationalCurve<K, C> {

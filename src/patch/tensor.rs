@@ -18,7 +18,7 @@ use crate::num::{Coord, I16F16, I32F32};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Tensor<const M: usize, const H: usize, C = I16F16> {
-    pub(super) points: [[Point3<C>; H]; M],
+    pub(crate) points: [[Point3<C>; H]; M],
 }
 
 /// Degrees (1, 1).

@@ -16,7 +16,7 @@ use crate::num::{Coord, I16F16, I32F32};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Triangle<const N: usize, const LEN: usize, C = I16F16> {
-    pub(super) points: [Point3<C>; LEN],
+    pub(crate) points: [Point3<C>; LEN],
 }
 
 /// Degree 1.

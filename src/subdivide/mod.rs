@@ -1,0 +1,16 @@
+//! Midpoint subdivision (Tian Jie 1989): nets in, nets of their parts out.
+//!
+//! | form | where | growth and error |
+//! |---|---|---|
+//! | exact, integers in place | [`halve_curve`], [`halve_tensor`], [`quarter_triangle`] | n more bits a level, no error |
+//! | rounded, nets that own their points | `subdivide` of every net in [`crate::patch`], `bisect` of tensor-product ones | each coordinate within 2^-17 a level |
+//!
+//! Both sides of a shared edge get the same bits: an edge of a part depends on the control points of the edge alone.
+//! Rational nets are subdivided in homogeneous coordinates, exactly, before points and weights are rounded.
+
+mod edge;
+mod exact;
+mod nets;
+mod rounded;
+
+pub use exact::{Direction, Half, Quarter, halve_curve, halve_tensor, quarter_triangle};

@@ -1,0 +1,147 @@
+//! Rounded midpoint subdivision of nets: exact sums, rounded once, half up.
+//!
+//! A control point on an edge of a child is a sum over the edge's own control points, exact before its one rounding:
+//! both patches at a shared edge, whatever their kind and whichever way they run, get the same bits.
+
+use super::exact::{Direction, Half, Quarter, halve_tensor, quarter_triangle};
+use crate::geometry::Point3;
+use crate::num::{Coord, I16F16, Word, div_half_up};
+use crate::patch::{MAX_DEGREE, RationalTensorNet, RationalTriangleNet, SurfaceNet, TensorNet, TriangleNet};
+
+/// The most control points of a net.
+const MOST: usize = (MAX_DEGREE + 1) * (MAX_DEGREE + 1);
+
+/// A part of a patch after one subdivision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Cut {
+    /// A half of a tensor-product patch.
+    Half(Direction, Half),
+    /// A quarter of a tensor-product patch.
+    Tensor(Half, Half),
+    /// A quarter of a triangle.
+    Triangle(Quarter),
+}
+
+impl Cut {
+    /// Replaces the control values of a net of these degrees by 2^shift times those of the part; returns the shift.
+    fn apply<W: Word>(self, values: &mut [W], degrees: (usize, usize)) -> u32 {
+        match self {
+            Self::Half(direction, half) => {
+                halve_tensor(values, degrees, direction, half);
+                (if direction == Direction::R { degrees.0 } else { degrees.1 }) as u32
+            }
+            Self::Tensor(r, s) => {
+                halve_tensor(values, degrees, Direction::R, r);
+                halve_tensor(values, degrees, Direction::S, s);
+                (degrees.0 + degrees.1) as u32
+            }
+            Self::Triangle(quarter) => {
+                quarter_triangle(values, degrees.0, quarter);
+                degrees.0 as u32
+            }
+        }
+    }
+}
+
+/// A net as the subdivider sees it; a curve has the degrees (n, 0).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Source<'a> {
+    pub(crate) degrees: (usize, usize),
+    pub(crate) points: &'a [Point3],
+    pub(crate) weights: Option<&'a [I16F16]>,
+}
+
+impl<'a> Source<'a> {
+    pub(crate) fn of(net: SurfaceNet<'a>) -> Self {
+        Self { degrees: net.degrees(), points: net.points(), weights: net.weights() }
+    }
+
+    /// Writes the points of the part into `points` and, for a rational net, its weights into `weights`; both hold as
+    /// many as the net has points, or only the first are written.
+    ///
+    /// A polynomial point is within 2^-17 of the exact one. A rational point and a weight are each within 2^-17.
+    ///
+    /// Stack: 0.2 KB for nets of up to 16 points, 0.8 KB above, 2.2 KB for rational ones.
+    pub(crate) fn cut(self, part: Cut, points: &mut [Point3], weights: &mut [I16F16]) {
+        match self.weights {
+            Some(by) => self.cut_weighted(by, part, points, weights),
+            None if self.points.len() <= 16 => self.cut_points::<16>(part, points),
+            None => self.cut_points::<MOST>(part, points),
+        }
+    }
+
+    #[inline(never)]
+    fn cut_points<const ROOM: usize>(self, part: Cut, points: &mut [Point3]) {
+        for axis in 0..3 {
+            // Legal bits have 32 bits; at most 16 more: the sums fit.
+            let mut sums = [0_i64; ROOM];
+            let Some(sums) = sums.get_mut(..self.points.len()) else { return };
+            for (sum, p) in sums.iter_mut().zip(self.points) {
+                *sum = bits(p, axis);
+            }
+            let shift = part.apply(sums, self.degrees);
+            for (point, sum) in points.iter_mut().zip(sums.iter()) {
+                set(point, axis, (*sum + ((1 << shift) >> 1)) >> shift);
+            }
+        }
+    }
+
+    #[inline(never)]
+    fn cut_weighted(self, by: &[I16F16], part: Cut, points: &mut [Point3], weights: &mut [I16F16]) {
+        let mut total = [0_i64; MOST];
+        let Some(total) = total.get_mut(..self.points.len()) else { return };
+        for (sum, w) in total.iter_mut().zip(by) {
+            *sum = w.bits();
+        }
+        let shift = part.apply(total, self.degrees);
+        for (weight, sum) in weights.iter_mut().zip(total.iter()) {
+            // Sums of positive integers: at least 2^shift.
+            *weight = I16F16::from_bits(((*sum + ((1 << shift) >> 1)) >> shift) as i32);
+        }
+        for axis in 0..3 {
+            let mut sums = [0_i128; MOST];
+            let Some(sums) = sums.get_mut(..self.points.len()) else { return };
+            for ((sum, p), w) in sums.iter_mut().zip(self.points).zip(by) {
+                *sum = i128::from(bits(p, axis)) * i128::from(w.bits());
+            }
+            part.apply(sums, self.degrees);
+            for ((point, sum), total) in points.iter_mut().zip(sums.iter()).zip(total.iter()) {
+                // A mean of coordinates: in range.
+                set(point, axis, div_half_up(*sum, (*total).into()).unwrap_or(0) as i64);
+            }
+        }
+    }
+}
+
+fn bits(p: &Point3, axis: usize) -> i64 {
+    match axis {
+        0 => p.x.bits(),
+        1 => p.y.bits(),
+        _ => p.z.bits(),
+    }
+}
+
+fn set(p: &mut Point3, axis: usize, bits: i64) {
+    let value = I16F16::from_bits(bits as i32);
+    match axis {
+        0 => p.x = value,
+        1 => p.y = value,
+        _ => p.z = value,
+    }
+}
+
+/// The view of a part that [`Source::cut`] wrote: of the kind and degrees of the net it came from.
+pub(crate) fn part_net<'a>(net: SurfaceNet<'_>, points: &'a [Point3], weights: &'a [I16F16]) -> SurfaceNet<'a> {
+    let triangle = |n: usize| TriangleNet::of_checked(n, points);
+    let tensor = |degrees: (usize, usize)| TensorNet::of_checked(degrees, points);
+    match net {
+        SurfaceNet::Triangle(net) => SurfaceNet::Triangle(triangle(net.degree())),
+        SurfaceNet::Tensor(net) => SurfaceNet::Tensor(tensor(net.degrees())),
+        SurfaceNet::RationalTriangle(net) => {
+            SurfaceNet::RationalTriangle(RationalTriangleNet::of_checked(triangle(net.control_net().degree()), weights))
+        }
+        SurfaceNet::RationalTensor(net) => {
+            SurfaceNet::RationalTensor(RationalTensorNet::of_checked(tensor(net.control_net().degrees()), weights))
+        }
+    }
+}
