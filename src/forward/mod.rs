@@ -36,6 +36,7 @@ mod form;
 mod kernel;
 mod lanes;
 mod lattice;
+mod piece;
 #[cfg(feature = "graphics")]
 mod plane;
 mod quotient;
@@ -51,8 +52,9 @@ pub use lattice::{Lattice, LatticePoint, LatticePoints, RowStep, RowSteps};
 pub use steps::{Sampling, Steps};
 
 pub(crate) use budget::MAX_STEPS;
-pub(crate) use form::Form;
+pub(crate) use form::{Form, Kind};
 pub(crate) use kernel::{Kernel, Residual};
+pub(crate) use piece::{deepest_budget, piece_budget, piece_sampling, piece_turn};
 #[cfg(feature = "graphics")]
 pub(crate) use plane::{PlanePlan, PlaneWalk, PlaneWalker};
 pub(crate) use quotient::QuotientWalker;

@@ -32,8 +32,8 @@ pub(crate) trait Visit: Sized {
     /// Whether the visitor looks at nothing but i, j and the point of a [`Site`]: then rows may run in lanes.
     const POINTS_ONLY: bool = false;
 
-    /// Whether the points of row `j` are wanted.
-    fn wants_row(&self, j: u32) -> bool {
+    /// Whether the points of row `j` are wanted; asked once a row, before its points.
+    fn wants_row(&mut self, j: u32) -> bool {
         let _ = j;
         true
     }

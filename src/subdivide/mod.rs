@@ -14,3 +14,5 @@ mod nets;
 mod rounded;
 
 pub use exact::{Direction, Half, Quarter, halve_curve, halve_tensor, quarter_triangle};
+
+pub(crate) use rounded::{Cut, Source, part_net};

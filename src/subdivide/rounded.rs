@@ -46,14 +46,29 @@ impl Cut {
 /// A net as the subdivider sees it; a curve has the degrees (n, 0).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Source<'a> {
-    pub(crate) degrees: (usize, usize),
-    pub(crate) points: &'a [Point3],
-    pub(crate) weights: Option<&'a [I16F16]>,
+    degrees: (usize, usize),
+    points: &'a [Point3],
+    weights: Option<&'a [I16F16]>,
+    /// Weights of parts are multiplied by two to this power: surfaces do not change by it, roundings do.
+    doublings: i32,
 }
 
 impl<'a> Source<'a> {
+    pub(crate) fn new(degrees: (usize, usize), points: &'a [Point3], weights: Option<&'a [I16F16]>) -> Self {
+        Self { degrees, points, weights, doublings: 0 }
+    }
+
     pub(crate) fn of(net: SurfaceNet<'a>) -> Self {
-        Self { degrees: net.degrees(), points: net.points(), weights: net.weights() }
+        Self::new(net.degrees(), net.points(), net.weights())
+    }
+
+    /// The source whose parts have weights of at least 17 bits and of no more than 31: a weight is then within 2^-17 of
+    /// itself, however small the weights of the net are.
+    pub(crate) fn with_long_weights(self) -> Self {
+        let Some(weights) = self.weights else { return self };
+        let length = |w: Option<&I16F16>| 32 - w.map_or(1, |w| w.to_bits()).leading_zeros() as i32;
+        let (longest, shortest) = (length(weights.iter().max()), length(weights.iter().min()));
+        Self { doublings: (17 + longest - shortest).min(31) - longest, ..self }
     }
 
     /// Writes the points of the part into `points` and, for a rational net, its weights into `weights`; both hold as
@@ -95,8 +110,9 @@ impl<'a> Source<'a> {
         }
         let shift = part.apply(total, self.degrees);
         for (weight, sum) in weights.iter_mut().zip(total.iter()) {
-            // Sums of positive integers: at least 2^shift.
-            *weight = I16F16::from_bits(((*sum + ((1 << shift) >> 1)) >> shift) as i32);
+            // Sums of positive integers: at least 2^shift. Doubled, at most 31 + shift bits.
+            let (up, down) = (self.doublings.max(0), shift + self.doublings.min(0).unsigned_abs());
+            *weight = I16F16::from_bits((((*sum << up) + ((1 << down) >> 1)) >> down).max(1) as i32);
         }
         for axis in 0..3 {
             let mut sums = [0_i128; MOST];

@@ -1,0 +1,277 @@
+//! Sampling of pieces: hole-free counts in 32-bit arithmetic, and the narrowest accumulator by rounding the net.
+//!
+//! A piece is a part of a patch that is sampled on its own. Its counts must come cheap: most of them are only compared
+//! with those of its own parts.
+
+use super::budget::unused_bits;
+use super::form::{Form, Kind};
+use super::{Accumulator, Budget, LatticeError, MAX_STEPS, Sampling, Steps};
+use crate::geometry::Point3;
+use crate::num::Coord;
+use crate::patch::{SurfaceNet, triangle_index};
+
+/// The fraction bits that a net keeps at least where its positions are rounded for a narrower accumulator.
+const LEAST_FRACTION: u32 = 8;
+
+/// The bound of a count with 2^-8 + 2^-11 more of itself. A lattice point is within 2^-9 + 2^-13 of the patch: half a
+/// unit of [`LEAST_FRACTION`] bits, and 2^-17 for each of at most 16 roundings at subdivision. So neighbours, also across
+/// a seam, are d = 2^-8 + 2^-12 farther apart than the bound says, and a count has to exceed bound/(1 − d).
+fn with_slack(bound: u64) -> u64 {
+    bound + (bound >> 8) + (bound >> 11)
+}
+
+/// The bounds on |S_r|, |S_s| and, for a triangle, |S_u − S_v| along one axis, in 2^-16.
+type Slopes = [u64; 3];
+
+fn bits(p: &Point3, axis: usize) -> i64 {
+    match axis {
+        0 => p.x.bits(),
+        1 => p.y.bits(),
+        _ => p.z.bits(),
+    }
+}
+
+/// The largest |difference| of neighbours times the degree, for each family of net edges.
+fn slopes(net: &SurfaceNet<'_>, axis: usize) -> Slopes {
+    let (points, (m, h)) = (net.points(), net.degrees());
+    let gap = |a: &Point3, b: &Point3| bits(a, axis).abs_diff(bits(b, axis));
+    let mut largest = [0; 3];
+    if net.is_triangle() {
+        for row in 0..m {
+            let above = points.get(triangle_index(row, 0)..).unwrap_or_default();
+            let below = points.get(triangle_index(row + 1, 0)..).unwrap_or_default();
+            for ((p, q), next) in above.iter().zip(below).zip(below.iter().skip(1)).take(row + 1) {
+                for (largest, gap) in largest.iter_mut().zip([gap(p, next), gap(q, next), gap(p, q)]) {
+                    *largest = gap.max(*largest);
+                }
+            }
+        }
+    } else {
+        for (p, q) in points.iter().zip(points.iter().skip(h + 1)) {
+            largest[0] = gap(p, q).max(largest[0]);
+        }
+        for row in points.chunks_exact(h + 1) {
+            for (p, q) in row.iter().zip(row.iter().skip(1)) {
+                largest[1] = gap(p, q).max(largest[1]);
+            }
+        }
+    }
+    [largest[0] * m as u64, largest[1] * h as u64, largest[2] * m as u64]
+}
+
+/// floor(slope with slack) + 1 steps.
+fn count(slope: u64) -> u32 {
+    more_than(with_slack(slope))
+}
+
+/// floor(bound) + 1 steps.
+fn more_than(bound: u64) -> u32 {
+    ((bound >> 16) as u32).saturating_add(1).min(MAX_STEPS + 1)
+}
+
+/// The cheapest hole-free sampling of a piece, with the slack that seams between pieces need; `centres`: those of cells
+/// may be used.
+pub(crate) fn piece_sampling(net: SurfaceNet<'_>, centres: bool) -> Sampling {
+    if net.weights().is_some() {
+        let plain = || Sampling { steps: Steps::hole_free(net), centres };
+        let Sampling { steps, centres } = if centres { Sampling::cheapest(net) } else { plain() };
+        let more = |n: u32| (with_slack(n.into()) as u32 + 1).min(MAX_STEPS + 1);
+        return Sampling { steps: Steps { r: more(steps.r), s: more(steps.s) }, centres };
+    }
+    let [x, y] = [slopes(&net, 0), slopes(&net, 1)];
+    let [a, b, c] = core::array::from_fn(|d| x[d].max(y[d]));
+    if net.is_triangle() {
+        // The centres of cells make up for the longest family of edges.
+        let longest = a.max(b).max(c);
+        let others = a.max(b).min(b.max(c)).min(a.max(c));
+        let (coarse, fine) = (count(others), count(longest));
+        return cheaper(net, Steps { r: fine, s: fine }, centres.then_some(Steps { r: coarse, s: coarse }));
+    }
+    let coarse = Steps { r: count(a), s: count(b) };
+    cheaper(net, tensor_steps(&net, a, b), centres.then_some(coarse))
+}
+
+fn cheaper(net: SurfaceNet<'_>, plain: Steps, coarse: Option<Steps>) -> Sampling {
+    let points = |sampling: &Sampling| sampling.points(net.is_triangle());
+    let plain = Sampling { steps: plain, centres: false };
+    let coarse = coarse.map(|steps| Sampling { steps, centres: true });
+    coarse.filter(|coarse| points(coarse) < points(&plain)).unwrap_or(plain)
+}
+
+impl Sampling {
+    /// The points of the lattice, and of its cells' centres where they are sampled.
+    pub(crate) fn points(self, triangle: bool) -> u64 {
+        let (r, s) = (u64::from(self.steps.r), u64::from(self.steps.s));
+        match (triangle, self.centres) {
+            (true, false) => (r + 1) * (r + 2) / 2,
+            (true, true) => (r + 1) * (r + 1),
+            (false, false) => (r + 1) * (s + 1),
+            (false, true) => (r + 1) * (s + 1) + r * s,
+        }
+    }
+}
+
+/// The hole-free steps of a polynomial tensor patch with bounds a and b on |S_r| and |S_s|, from magnitudes p and q of 15
+/// bits, rounded up.
+///
+/// A pair of coefficients of S_r and S_s with the sign that the cell's diagonal cancels differs by less than the larger
+/// of |S_r|/n_r, |S_s|/n_s < 1; pairs that add up ask for p/n_r + q/n_s < 1. Three candidates: n_r : n_s = a : b
+/// ([`Steps::hole_free`]), the least n_r, the least n_s. With the slack d the sums have to be below 1 − d, which with the
+/// least n_r asks for n_s > q·n_r/((1 − d)·n_r − p).
+fn tensor_steps(net: &SurfaceNet<'_>, a: u64, b: u64) -> Steps {
+    let used = 64 - (a | b).leading_zeros();
+    let shift = used.saturating_sub(15);
+    let short = |magnitude: u64| (magnitude >> shift) as u32 + 1;
+    let (along_r, along_s) = (short(a), short(b));
+    let least = [along_r, along_s].map(|bound| count(u64::from(bound) << shift));
+    // In the unit of p and q.
+    let scaled = least.map(|n| ((u64::from(n) << 16) >> shift) as u32);
+    let [room_r, room_s] = scaled.map(|n| n - (n >> 8) - (n >> 11) - 1);
+    let mut diagonals = [Diagonal::default(); 2];
+    for axis in 0..2 {
+        each_slope(net, axis, |by_r, by_s| {
+            let (p, q) = (short(by_r.unsigned_abs()), short(by_s.unsigned_abs()));
+            let diagonal = &mut diagonals[usize::from((by_r < 0) == (by_s < 0))];
+            diagonal.sum = diagonal.sum.max(p * along_s + q * along_r);
+            diagonal.for_s.raise(q, room_r.saturating_sub(p));
+            diagonal.for_r.raise(p, room_s.saturating_sub(q));
+        });
+    }
+    let candidates = diagonals.into_iter().flat_map(|diagonal| {
+        let k = diagonal.sum.max(along_r * along_s);
+        let balanced = |other: u32| count((u64::from(k) << shift).checked_div(other.into()).unwrap_or(0));
+        let beside = |ratio: Ratio, other: u32, least: u32| {
+            ratio.times(other).map_or(MAX_STEPS + 1, |bound| more_than(u64::from(bound) << shift).max(least))
+        };
+        [
+            Steps { r: balanced(along_s), s: balanced(along_r) },
+            Steps { r: least[0], s: beside(diagonal.for_s, scaled[0], least[1]) },
+            Steps { r: beside(diagonal.for_r, scaled[1], least[0]), s: least[1] },
+        ]
+    });
+    let points = |steps: &Steps| u64::from(steps.r + 1) * u64::from(steps.s + 1);
+    candidates.min_by_key(points).unwrap_or(Steps { r: MAX_STEPS + 1, s: MAX_STEPS + 1 })
+}
+
+/// What the pairs that add up along one diagonal ask for.
+#[derive(Clone, Copy, Debug, Default)]
+struct Diagonal {
+    sum: u32,
+    for_r: Ratio,
+    for_s: Ratio,
+}
+
+/// The largest of some ratios of 16-bit numbers; a denominator of 0 is infinite.
+#[derive(Clone, Copy, Debug)]
+struct Ratio {
+    numerator: u32,
+    denominator: u32,
+}
+
+impl Default for Ratio {
+    fn default() -> Self {
+        Self { numerator: 0, denominator: 1 }
+    }
+}
+
+impl Ratio {
+    fn raise(&mut self, numerator: u32, denominator: u32) {
+        if numerator * self.denominator > self.numerator * denominator {
+            *self = Self { numerator, denominator };
+        }
+    }
+
+    /// The ratio times a 16-bit factor, rounded up; `None` for infinity, or more than 32 bits.
+    fn times(self, factor: u32) -> Option<u32> {
+        (self.numerator * factor).checked_div(self.denominator)?.checked_add(1)
+    }
+}
+
+/// Calls `f` for the Bernstein coefficients of S_r and S_s along one axis, both of degree (m, h), in 2^-16.
+fn each_slope(net: &SurfaceNet<'_>, axis: usize, mut f: impl FnMut(i64, i64)) {
+    let (points, (m, h)) = (net.points(), net.degrees());
+    let at = |i: usize, j: usize| points.get(i * (h + 1) + j).map_or(0, |p| bits(p, axis));
+    for i in 0..=m {
+        for j in 0..=h {
+            let here = at(i, j);
+            // Elevation: k·e_(k−1) + (n − k)·e_k of the differences e.
+            let before = if i > 0 { i as i64 * (here - at(i - 1, j)) } else { 0 };
+            let by_r = if i < m { before + (m - i) as i64 * (at(i + 1, j) - here) } else { before };
+            let before = if j > 0 { j as i64 * (here - at(i, j - 1)) } else { 0 };
+            let by_s = if j < h { before + (h - j) as i64 * (at(i, j + 1) - here) } else { before };
+            f(by_r, by_s);
+        }
+    }
+}
+
+/// The turn of a piece's lattice whose rows change y the least: then bands leave out the most of them. A triangle with
+/// centres is turned so that they lie on its longest family of edges.
+pub(crate) fn piece_turn(net: &SurfaceNet<'_>, sampling: Sampling) -> u8 {
+    let [x, y] = [slopes(net, 0), slopes(net, 1)];
+    if !net.is_triangle() {
+        return (y[1] < y[0]).into();
+    }
+    // Turned by 0, 1, 2, rows run along families 0, 1, 2, and cells are halved along families 2, 0, 1.
+    if sampling.centres {
+        let [a, b, c] = core::array::from_fn(|d| x[d].max(y[d]));
+        return if c >= a.max(b) { 0 } else { 1 + u8::from(b > a) };
+    }
+    if y[2] < y[0].min(y[1]) { 2 } else { (y[1] < y[0]).into() }
+}
+
+/// K: the longest step of any coordinate in whole units, rounded up, at least 1.
+fn longest_step(net: &SurfaceNet<'_>, (r, s): (u32, u32)) -> u32 {
+    let units = |slope: u64, steps: u32| slope.div_ceil(u64::from(steps.max(1)) << 16);
+    let longest = (0..3).map(|axis| {
+        let [a, b, _] = slopes(net, axis);
+        units(a, r).max(units(b, s))
+    });
+    longest.max().unwrap_or(0).max(1).min(1 << 16) as u32
+}
+
+/// The budget of a polynomial piece: 32 bits where the net, rounded to at least [`LEAST_FRACTION`] bits, fits and the
+/// degree is at most 3; then 64, then 128. [`Budget::fraction_bits`] tells what to round to.
+///
+/// # Errors
+/// [`LatticeError::Budget`] where 128 bits are too few.
+pub(crate) fn piece_budget(net: SurfaceNet<'_>, form: &Form<'_>) -> Result<Budget, LatticeError> {
+    if form.weights().is_some() {
+        return Budget::of(form);
+    }
+    budget(form, longest_step(&net, form.steps), 16 - unused_bits(form))
+}
+
+/// Checks that a polynomial patch of this sampling can be split into pieces that have a budget, quartering it `depth`
+/// times at most: the first differences of a net halve with each.
+pub(crate) fn deepest_budget(net: SurfaceNet<'_>, sampling: Sampling, depth: u32) -> Result<(), LatticeError> {
+    let Steps { r, s } = sampling.steps;
+    let largest_step = longest_step(&net, (r, s)).saturating_add(1);
+    // A budget below 2^128 at the last level; one of 64 bits on the way ends splitting earlier.
+    let steps = ((r >> depth) + 2, (s >> depth) + 2);
+    budget(&Form::surface(net, steps), largest_step, 16).map(drop)
+}
+
+/// The budget of a net that uses so many fraction bits.
+fn budget(form: &Form<'_>, largest_step: u32, used: u32) -> Result<Budget, LatticeError> {
+    let (r, s) = form.table_steps();
+    let along_s = if form.kind == Kind::Tensor { u128::from(s).checked_pow(form.degrees.1 as u32) } else { Some(1) };
+    let cells = u128::from(r).checked_pow(form.degrees.0 as u32).and_then(|r| r.checked_mul(along_s?));
+    let least = used.min(LEAST_FRACTION);
+    let values = cells.and_then(|cells| cells.checked_mul(2 * u128::from(largest_step) + 1));
+    let free = values.map_or(0, u128::leading_zeros);
+    let accumulator = match 128_u32.saturating_sub(free) + least {
+        ..=32 if form.degree() < 4 => Some(Accumulator::I32),
+        ..=64 => Some(Accumulator::I64),
+        ..=128 if values.is_some() => Some(Accumulator::I128),
+        _ => None,
+    };
+    match (cells, accumulator) {
+        (Some(cells), Some(accumulator)) => {
+            let width = 32 << accumulator as u32;
+            let fraction_bits = (width + free).saturating_sub(128).min(used);
+            let scale = cells << fraction_bits;
+            Ok(Budget { accumulator, scale, fraction_bits, largest_step, weight_shift: 0 })
+        }
+        _ => Err(LatticeError::Budget { degrees: form.degrees, steps: form.steps, fraction_bits: least, bits: 129 }),
+    }
+}

@@ -1,0 +1,125 @@
+//! Back faces: which pieces look away from the viewer everywhere.
+//!
+//! S_r is a positive combination of net differences along r, S_s of those along s (of a rational patch: of the
+//! differences of all points of neighbouring rows and columns, because weights mix them). If the first lie in one plane
+//! cone, the second in another, and no ray of the one turns the wrong way into a ray of the other, the z component of
+//! S_r × S_s has one sign on the whole piece.
+
+use crate::geometry::Point3;
+use crate::patch::{SurfaceNet, triangle_index};
+
+/// A vector in the plane of the screen, in 2^-16.
+type Vector = [i64; 2];
+
+/// Differences beyond this are not looked at: 16384 pixels. Products then fit 63 bits.
+const LONGEST: i64 = 1 << 30;
+
+fn between(from: &Point3, to: &Point3) -> Vector {
+    [i64::from(to.x.to_bits()) - i64::from(from.x.to_bits()), i64::from(to.y.to_bits()) - i64::from(from.y.to_bits())]
+}
+
+fn cross(a: Vector, b: Vector) -> i64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+fn dot(a: Vector, b: Vector) -> i64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// All α·right + β·left with α, β ≥ 0: less than half a turn from the one to the other.
+#[derive(Clone, Copy, Debug)]
+struct Cone {
+    right: Vector,
+    left: Vector,
+}
+
+impl Cone {
+    /// A cone that holds all vectors of `each`, which are not all zero; `None` where none was found.
+    fn around(each: impl Fn(&mut dyn FnMut(Vector))) -> Option<Self> {
+        let (mut cone, mut short): (Option<Self>, bool) = (None, true);
+        each(&mut |v| {
+            short &= v.iter().all(|c| c.abs() < LONGEST);
+            if !short || v == [0; 2] {
+                return;
+            }
+            let Some(Self { right, left }) = &mut cone else {
+                cone = Some(Self { right: v, left: v });
+                return;
+            };
+            if cross(*left, v) > 0 {
+                *left = v;
+            } else if cross(v, *right) > 0 {
+                *right = v;
+            }
+        });
+        let cone = cone.filter(|_| short)?;
+        let mut holds = cone.is_less_than_half();
+        each(&mut |v| holds &= cone.holds(v));
+        holds.then_some(cone)
+    }
+
+    fn is_less_than_half(&self) -> bool {
+        let turn = cross(self.right, self.left);
+        turn > 0 || (turn == 0 && dot(self.right, self.left) > 0)
+    }
+
+    fn holds(&self, v: Vector) -> bool {
+        let (from_right, to_left) = (cross(self.right, v), cross(v, self.left));
+        from_right >= 0 && to_left >= 0 && (from_right > 0 || to_left > 0 || dot(self.right, v) >= 0)
+    }
+
+    /// The signs of `a × b` over both cones: (never negative, never positive).
+    fn signs(&self, other: &Self) -> (bool, bool) {
+        let corners = [
+            cross(self.right, other.right),
+            cross(self.right, other.left),
+            cross(self.left, other.right),
+            cross(self.left, other.left),
+        ];
+        (corners.iter().all(|c| *c >= 0), corners.iter().all(|c| *c <= 0))
+    }
+}
+
+/// Calls `f` for the differences along r, or along s: of a triangle along u and v, both from w.
+fn each_difference(net: &SurfaceNet<'_>, along_s: bool, f: &mut dyn FnMut(Vector)) {
+    let (points, (m, h)) = (net.points(), net.degrees());
+    let mut step = |from: usize, to: usize| {
+        if let (Some(from), Some(to)) = (points.get(from), points.get(to)) {
+            f(between(from, to));
+        }
+    };
+    let mixes = net.weights().is_some();
+    if net.is_triangle() {
+        for row in 0..m {
+            for k in 0..=row {
+                let w = triangle_index(row - k, k + 1);
+                let to = if along_s { triangle_index(row + 1 - k, k) } else { triangle_index(row - k, k) };
+                step(w, to);
+            }
+        }
+        return;
+    }
+    let (across, last) = if along_s { (m, h) } else { (h, m) };
+    let index = |a: usize, b: usize| if along_s { b * (h + 1) + a } else { a * (h + 1) + b };
+    for a in 0..last {
+        for b in 0..=across {
+            if mixes {
+                (0..=across).for_each(|c| step(index(a, b), index(a + 1, c)));
+            } else {
+                step(index(a, b), index(a + 1, b));
+            }
+        }
+    }
+}
+
+/// Whether no point of a piece faces the viewer: z of S_r × S_s is nowhere negative, or nowhere positive where that
+/// normal points inwards. Where the cones are too wide to tell, and for rational triangles, the answer is no.
+pub(super) fn faces_away(net: &SurfaceNet<'_>, inward: bool) -> bool {
+    if net.is_triangle() && net.weights().is_some() {
+        return false;
+    }
+    let Some(along_r) = Cone::around(|f| each_difference(net, false, f)) else { return false };
+    let Some(along_s) = Cone::around(|f| each_difference(net, true, f)) else { return false };
+    let (never_negative, never_positive) = along_r.signs(&along_s);
+    if inward { never_positive } else { never_negative }
+}
