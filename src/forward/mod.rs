@@ -32,6 +32,7 @@ mod bounds;
 mod budget;
 mod curve;
 mod engine;
+mod estimate;
 mod form;
 mod kernel;
 mod lanes;
@@ -52,6 +53,7 @@ pub use lattice::{Lattice, LatticePoint, LatticePoints, RowStep, RowSteps};
 pub use steps::{Sampling, Steps};
 
 pub(crate) use budget::MAX_STEPS;
+pub(crate) use estimate::Estimate;
 pub(crate) use form::{Form, Kind};
 pub(crate) use kernel::{Kernel, Residual};
 pub(crate) use piece::{deepest_budget, piece_budget, piece_sampling, piece_turn};

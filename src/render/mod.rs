@@ -35,6 +35,7 @@
 //! least 1/1000 of its maximum over the patch (within 2 with a [`Gloss`]). Where a tangent vanishes (the pole of a patch with a collapsed side)
 //! the normal 1/64 further inside is taken.
 
+mod brush;
 mod cull;
 mod depth;
 mod frame;

@@ -1,18 +1,18 @@
 //! The pieces of a patch: split at midpoints while it pays, depth first, without a list of pieces.
 //!
 //! A piece costs the points of its cheapest hole-free sampling and [`SETUP`]. A tensor-product piece is halved in the
-//! direction whose halves cost less together than it does alone, else quartered if that pays, a triangle quartered.
-//! Nothing but the piece enters the decision, so every band finds the same pieces.
+//! direction that promises more, a triangle quartered, if its parts cost less together than it does alone; what does not
+//! fit 64 bits is quartered. Nothing but the piece enters the decision, so every band finds the same pieces.
 
 use super::plan::fits;
-use crate::forward::{Sampling, piece_sampling};
+use crate::forward::{Estimate, Sampling, piece_sampling};
 use crate::geometry::Point3;
 use crate::num::I16F16;
 use crate::patch::{MAX_DEGREE, SurfaceNet};
 use crate::subdivide::{Cut, Direction, Half, Quarter, Source, part_net};
 
 /// What setting up a piece costs, in points.
-const SETUP: u64 = 40;
+const SETUP: u64 = 24;
 
 /// How often a patch is split at most on the way to a piece.
 pub(super) const DEPTH: usize = 8;
@@ -63,7 +63,7 @@ pub(super) fn each_piece(net: SurfaceNet<'_>, pieces: &mut dyn Pieces) {
 fn with_room<const LEN: usize, const WEIGHTS: usize>(net: SurfaceNet<'_>, pieces: &mut dyn Pieces) {
     let mut points: Slots<Point3, LEN> = [[Point3::ORIGIN; LEN]; SLOTS];
     let mut weights: Slots<I16F16, WEIGHTS> = [[I16F16::ONE; WEIGHTS]; SLOTS];
-    let len = net.points().len();
+    let (len, sampling) = (net.points().len(), piece_sampling(net, true));
     let weight_len = if WEIGHTS == 0 { 0 } else { len };
     let mut tree = Tree {
         root: net,
@@ -71,8 +71,9 @@ fn with_room<const LEN: usize, const WEIGHTS: usize>(net: SurfaceNet<'_>, pieces
         weights: weights.as_flattened_mut(),
         len,
         weight_len,
-        path: [(Split::R, 0); DEPTH],
+        path: [Step { split: Split::R, part: 0, samplings: [sampling; 4] }; DEPTH],
         depth: 0,
+        sampling,
     };
     tree.walk(pieces);
 }
@@ -100,6 +101,14 @@ impl Split {
     }
 }
 
+/// A split on the way to a piece: which part the way takes, and how the parts are sampled.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    split: Split,
+    part: usize,
+    samplings: [Sampling; 4],
+}
+
 /// The pieces on the way from the patch to the current one; piece k stands in slot k − 1.
 struct Tree<'n, 's> {
     root: SurfaceNet<'n>,
@@ -107,16 +116,18 @@ struct Tree<'n, 's> {
     weights: &'s mut [I16F16],
     len: usize,
     weight_len: usize,
-    path: [(Split, usize); DEPTH],
+    path: [Step; DEPTH],
     depth: usize,
+    /// How the current piece is sampled.
+    sampling: Sampling,
 }
 
 impl Tree<'_, '_> {
     fn walk(&mut self, pieces: &mut dyn Pieces) {
         loop {
-            let split = self.visit(pieces);
-            if let (Some(split), Some(step)) = (split, self.path.get_mut(self.depth)) {
-                *step = (split, 0);
+            let step = self.visit(pieces);
+            if let (Some(step), Some(way)) = (step, self.path.get_mut(self.depth)) {
+                *way = step;
                 self.depth += 1;
                 self.enter();
                 pieces.split();
@@ -127,18 +138,17 @@ impl Tree<'_, '_> {
     }
 
     /// Draws the current piece, or says how it is split.
-    fn visit(&mut self, pieces: &mut dyn Pieces) -> Option<Split> {
-        let depth = self.depth;
+    fn visit(&mut self, pieces: &mut dyn Pieces) -> Option<Step> {
+        let (depth, sampling) = (self.depth, self.sampling);
         let (piece, slot, weight_slot) = self.current();
         if !pieces.wants(piece) {
             return None;
         }
-        let sampling = piece_sampling(piece, true);
-        let split = if depth < DEPTH { best_split(source(piece, depth), sampling, slot, weight_slot) } else { None };
-        if split.is_none() {
+        let step = if depth < DEPTH { best_split(source(piece, depth), sampling, slot, weight_slot) } else { None };
+        if step.is_none() {
             pieces.piece(piece, sampling, slot);
         }
-        split
+        step
     }
 
     /// The current piece, and the slots after it.
@@ -158,14 +168,15 @@ impl Tree<'_, '_> {
         (piece, after.get_mut(..len).unwrap_or_default(), weights_after.get_mut(..weight_len).unwrap_or_default())
     }
 
-    /// Cuts the current piece from the one above it.
+    /// Cuts the current piece from the one above it; whether there is one.
     fn enter(&mut self) -> bool {
         let Some(level) = self.depth.checked_sub(1) else { return false };
-        let Some((split, index)) = self.path.get(level).copied() else { return false };
-        let Some(part) = split.part(index) else { return false };
+        let Some(Step { split, part, samplings }) = self.path.get(level).copied() else { return false };
+        let (Some(cut), Some(sampling)) = (split.part(part), samplings.get(part)) else { return false };
+        self.sampling = *sampling;
         self.depth = level;
         let (parent, slot, weight_slot) = self.current();
-        source(parent, level).1.cut(part, slot, weight_slot);
+        source(parent, level).1.cut(cut, slot, weight_slot);
         self.depth = level + 1;
         true
     }
@@ -173,8 +184,8 @@ impl Tree<'_, '_> {
     /// Goes to the next piece that was not visited; whether there is one.
     fn advance(&mut self) -> bool {
         while let Some(level) = self.depth.checked_sub(1) {
-            if let Some((_, index)) = self.path.get_mut(level) {
-                *index += 1;
+            if let Some(step) = self.path.get_mut(level) {
+                step.part += 1;
             }
             if self.enter() {
                 return true;
@@ -197,39 +208,31 @@ fn best_split(
     own: Sampling,
     slot: &mut [Point3],
     weights: &mut [I16F16],
-) -> Option<Split> {
+) -> Option<Step> {
     let (triangle, rational) = (piece.is_triangle(), piece.weights().is_some());
-    let limit = own.points(triangle) + SETUP;
-    let quarters = if triangle { Split::Triangles } else { Split::Squares };
-    if !fits(piece, own) {
-        return Some(quarters);
-    }
-    let mut cost = |split: Split| {
-        let mut sum = 0;
-        let mut index = 0;
-        while let Some(part) = split.part(index) {
-            source.cut(part, slot, weights);
-            let net = part_net(piece, slot, weights);
-            let sampling = piece_sampling(net, true);
-            if rational && !fits(net, sampling) {
-                return u64::MAX;
-            }
-            sum += sampling.points(triangle) + SETUP;
-            if sum >= limit {
-                break;
-            }
-            index += 1;
-        }
-        sum
-    };
+    let must = !fits(piece, own);
+    let limit = if must { u64::MAX } else { own.points(triangle) + SETUP };
     if limit <= 3 * SETUP {
         return None;
     }
-    if !triangle {
-        let (r, s) = (cost(Split::R), cost(Split::S));
-        if r.min(s) < limit {
-            return Some(if r <= s { Split::R } else { Split::S });
+    let split = match (triangle, must) {
+        (true, _) => Split::Triangles,
+        (false, true) => Split::Squares,
+        (false, false) if Estimate::of(piece).prefers_s() => Split::S,
+        (false, false) => Split::R,
+    };
+    let mut step = Step { split, part: 0, samplings: [own; 4] };
+    let mut sum: u64 = 0;
+    for (index, sampling) in step.samplings.iter_mut().enumerate() {
+        let Some(part) = split.part(index) else { break };
+        source.cut(part, slot, weights);
+        let net = part_net(piece, slot, weights);
+        *sampling = piece_sampling(net, true);
+        sum = sum.saturating_add(sampling.points(triangle) + SETUP);
+        // Weights of parts have more bits than those of the patch may have had.
+        if sum >= limit || (rational && !fits(net, *sampling)) {
+            return None;
         }
     }
-    (cost(quarters) < limit).then_some(quarters)
+    Some(step)
 }

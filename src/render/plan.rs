@@ -1,5 +1,6 @@
 //! Which lattices a patch is drawn by, and with which walker.
 
+use super::pen::Pen;
 use super::pieces::DEPTH;
 use crate::forward::{
     Accumulator, Budget, Form, Kernel, LatticeError, QuotientWalker, Residual, Sampling, Visit, Walker, deepest_budget,
@@ -47,16 +48,32 @@ impl<'a> Plan<'a> {
         Ok(Self { form, budget, width })
     }
 
-    /// Walks the lattice.
+    /// Walks the lattice with any visitor, which may want tangents.
+    #[cfg(all(test, feature = "std"))]
     pub(super) fn walk<V: Visit>(&self, visitor: V) {
         match (self.width, self.form.weights().is_some()) {
-            (Width::Cubic32, false) => run::<_, _, 4>(Residual::<i32>::of(&self.budget), self, visitor),
+            (Width::Cubic32, _) => {}
             (Width::Cubic64, false) => run::<_, _, 4>(Residual::<i64>::of(&self.budget), self, visitor),
             (Width::Quintic64, false) => run::<_, _, 6>(Residual::<i64>::of(&self.budget), self, visitor),
             (Width::Full64, false) => run::<_, _, 9>(Residual::<i64>::of(&self.budget), self, visitor),
             (Width::Full128, false) => run::<_, _, 9>(Residual::<i128>::of(&self.budget), self, visitor),
             (Width::Cubic64, true) => run_quotient::<i64, _, 4>(self, visitor),
             (_, true) => run_quotient::<i128, _, 9>(self, visitor),
+        }
+    }
+}
+
+impl Plan<'_> {
+    /// Walks the lattice with a pen.
+    pub(super) fn draw(&self, pen: Pen<'_, false>) {
+        match (self.width, self.form.weights().is_some()) {
+            (Width::Cubic32, false) => run::<_, _, 4>(Residual::<i32>::of(&self.budget), self, pen),
+            (Width::Cubic64, false) => run::<_, _, 4>(Residual::<i64>::of(&self.budget), self, pen),
+            (Width::Quintic64, false) => run::<_, _, 6>(Residual::<i64>::of(&self.budget), self, pen),
+            (Width::Full64, false) => run::<_, _, 9>(Residual::<i64>::of(&self.budget), self, pen),
+            (Width::Full128, false) => run::<_, _, 9>(Residual::<i128>::of(&self.budget), self, pen),
+            (Width::Cubic64, true) => run_quotient::<i64, _, 4>(self, pen.with_normals()),
+            (_, true) => run_quotient::<i128, _, 9>(self, pen.with_normals()),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Scenes: what is drawn, checked once.
 
+use super::brush::{Canvas, Shader, Shading};
 use super::cull::faces_away;
 use super::depth::DepthWindow;
 use super::light::Light;
@@ -8,7 +9,7 @@ use super::lines::any_family;
 use super::lines::{LineDrawing, families, family};
 use super::pen::{Ink, Pen, Rows};
 use super::pieces::{Pieces, each_piece};
-use super::plan::{PiecePlan, Plan, check_pieces};
+use super::plan::{PiecePlan, check_pieces};
 use super::style::{Cull, Style};
 use super::tangents::Tangents;
 use super::tile::{Area, Paint, Tile};
@@ -141,10 +142,6 @@ impl<'a, S: Surface> Scene<'a, S> {
         statistics
     }
 
-    fn settings(&self) -> Settings<'_> {
-        Settings { light: &self.light, style: self.style, cull: self.cull, window: self.window }
-    }
-
     /// Calls `f` for every patch whose box meets the tile.
     fn each_visible<'b, C: Copy>(
         &self,
@@ -168,66 +165,51 @@ impl<'a, S: Surface> Scene<'a, S> {
         ink: Ink,
         statistics: &mut Statistics,
     ) {
-        each_piece(net, &mut Filling { scene: self.settings(), tile, paint, patch, inward: false, ink, statistics });
+        let shading = Shading { light: &self.light, style: self.style, window: self.window };
+        each_piece(net, &mut Filling { shading, cull: self.cull, tile, paint, patch, inward: false, ink, statistics });
     }
 }
 
-/// What drawing a piece takes from its scene.
-#[derive(Clone, Copy)]
-struct Settings<'a> {
-    light: &'a Light,
-    style: Style,
-    cull: Cull,
-    window: DepthWindow,
-}
-
 /// The pieces of one patch on their way into a tile.
-struct Filling<'a, 'b, 't, P: Paint> {
-    scene: Settings<'a>,
+struct Filling<'s, 'b, 't, P: Paint> {
+    shading: Shading<'s>,
+    cull: Cull,
     tile: &'t mut Tile<'b, P::Pixel>,
-    paint: &'a P,
+    paint: &'s P,
     patch: usize,
     inward: bool,
     ink: Ink,
     statistics: &'t mut Statistics,
 }
 
-impl<P: Paint> Filling<'_, '_, '_, P> {
-    /// Walks one lattice of a piece with the full net `net`.
-    fn walk<const RATIONAL: bool>(&mut self, net: SurfaceNet<'_>, plan: &Plan<'_>) {
-        let Settings { light, style, window, .. } = self.scene;
-        let area = self.tile.area();
-        let band = (area.y, area.y.saturating_add_unsigned(area.height));
-        plan.walk(Pen::<P, RATIONAL> {
-            tile: self.tile,
-            paint: self.paint,
-            light,
-            style,
-            ink: self.ink,
-            net,
-            form: &plan.form,
-            tangents: Tangents::new(net, &plan.form),
-            patch: self.patch,
-            window,
-            fraction: Fraction::of(plan.budget.scale, window.bits),
-            rows: Rows::of(&plan.form, band),
-            points: &mut self.statistics.points,
-        });
-    }
-}
-
 impl<P: Paint> Pieces for Filling<'_, '_, '_, P> {
     fn wants(&mut self, piece: SurfaceNet<'_>) -> bool {
         PixelBox::of(&piece.bounds()).meets(&self.tile.area(), 0)
-            && (self.scene.cull == Cull::None || !faces_away(&piece, self.inward))
+            && (self.cull == Cull::None || !faces_away(&piece, self.inward))
     }
 
     fn piece(&mut self, piece: SurfaceNet<'_>, sampling: Sampling, room: &mut [Point3]) {
         // Checked in `new`, so it cannot fail here.
         let Ok(plan) = PiecePlan::of(piece, sampling) else { return };
         self.statistics.pieces += 1;
+        let (area, colour, depth) = self.tile.parts();
+        let band = (area.y, area.y.saturating_add_unsigned(area.height));
+        let window = self.shading.window;
         plan.each_lattice(piece, room, |plan| {
-            if piece.weights().is_some() { self.walk::<true>(piece, &plan) } else { self.walk::<false>(piece, &plan) }
+            let form = &plan.form;
+            let canvas = Canvas { paint: self.paint, patch: self.patch, colour };
+            let tangents = Tangents::new(piece, form);
+            plan.draw(Pen {
+                area,
+                depth,
+                window,
+                fraction: Fraction::of(plan.budget.scale, window.bits),
+                ink: self.ink,
+                form,
+                rows: Rows::in_band(form, band),
+                points: &mut self.statistics.points,
+                brush: &mut Shader { shading: self.shading, canvas, net: piece, form, tangents },
+            });
         });
     }
 
