@@ -4,7 +4,7 @@
 //! from one triangle of sums per row of differences. Weights are left out: this chooses between samplings that are all
 //! right.
 
-use crate::num::Coord;
+use crate::geometry::Point3;
 use crate::patch::{MAX_DEGREE, SurfaceNet};
 
 /// The largest differences of a piece, of x and y, along r and along s, in 2^-7.
@@ -24,14 +24,20 @@ const DROP: u32 = 9;
 impl Estimate {
     /// Cost: about 30 additions per control point of a bicubic.
     pub(crate) fn of(net: SurfaceNet<'_>) -> Self {
-        let (m, h) = net.degrees();
-        let points = net.points();
+        match net.degrees() {
+            (3, 3) => Self::with_degrees(net.points(), (3, 3)),
+            degrees => Self::with_degrees(net.points(), degrees),
+        }
+    }
+
+    #[inline(always)]
+    fn with_degrees(points: &[Point3], (m, h): (usize, usize)) -> Self {
         let mut estimate = Self { degrees: (m, h), ..Self::default() };
         for axis in 0..2 {
             let at = |a: usize, b: usize| {
                 points.get(a * (h + 1) + b).map_or(0, |p| {
                     let c = if axis == 0 { p.x } else { p.y };
-                    (c.bits() >> DROP) as i32
+                    c.to_bits() >> DROP
                 })
             };
             for b in 0..=h {
@@ -62,7 +68,7 @@ impl Estimate {
         self.add_values(axis, way, &mut values, count);
     }
 
-    #[inline(never)]
+    #[inline(always)]
     fn add_values(
         &mut self,
         axis: usize,

@@ -7,8 +7,7 @@ use super::budget::unused_bits;
 use super::form::{Form, Kind};
 use super::{Accumulator, Budget, LatticeError, MAX_STEPS, Sampling, Steps};
 use crate::geometry::Point3;
-use crate::num::Coord;
-use crate::patch::{SurfaceNet, triangle_index};
+use crate::patch::{MAX_DEGREE, SurfaceNet, triangle_index};
 
 /// The fraction bits that a net keeps at least where its positions are rounded for a narrower accumulator.
 const LEAST_FRACTION: u32 = 8;
@@ -16,25 +15,30 @@ const LEAST_FRACTION: u32 = 8;
 /// The bound of a count with 2^-8 + 2^-11 more of itself. A lattice point is within 2^-9 + 2^-13 of the patch: half a
 /// unit of [`LEAST_FRACTION`] bits, and 2^-17 for each of at most 16 roundings at subdivision. So neighbours, also across
 /// a seam, are d = 2^-8 + 2^-12 farther apart than the bound says, and a count has to exceed bound/(1 − d).
-fn with_slack(bound: u64) -> u64 {
+fn with_slack(bound: u32) -> u32 {
     bound + (bound >> 8) + (bound >> 11)
 }
 
-/// The bounds on |S_r|, |S_s| and, for a triangle, |S_u − S_v| along one axis, in 2^-16.
-type Slopes = [u64; 3];
+/// Slopes are counted in 2^-9: differences of coordinates cut to 9 fraction bits have at most 25 bits and are less than
+/// one unit off.
+const SHORT: u32 = 9;
 
-fn bits(p: &Point3, axis: usize) -> i64 {
-    match axis {
-        0 => p.x.bits(),
-        1 => p.y.bits(),
-        _ => p.z.bits(),
-    }
+/// The bounds on |S_r|, |S_s| and, for a triangle, |S_u − S_v| along one axis, in 2^-9.
+type Slopes = [u32; 3];
+
+fn short(p: &Point3, axis: usize) -> i32 {
+    let c = match axis {
+        0 => p.x,
+        1 => p.y,
+        _ => p.z,
+    };
+    c.to_bits() >> (16 - SHORT)
 }
 
-/// The largest |difference| of neighbours times the degree, for each family of net edges.
+/// The largest |difference| of neighbours times the degree, rounded up, for each family of net edges.
 fn slopes(net: &SurfaceNet<'_>, axis: usize) -> Slopes {
     let (points, (m, h)) = (net.points(), net.degrees());
-    let gap = |a: &Point3, b: &Point3| bits(a, axis).abs_diff(bits(b, axis));
+    let gap = |a: &Point3, b: &Point3| short(a, axis).abs_diff(short(b, axis)) + 1;
     let mut largest = [0; 3];
     if net.is_triangle() {
         for row in 0..m {
@@ -47,26 +51,26 @@ fn slopes(net: &SurfaceNet<'_>, axis: usize) -> Slopes {
             }
         }
     } else {
-        for (p, q) in points.iter().zip(points.iter().skip(h + 1)) {
+        for (p, q) in points.iter().zip(points.get(h + 1..).unwrap_or_default()) {
             largest[0] = gap(p, q).max(largest[0]);
         }
         for row in points.chunks_exact(h + 1) {
-            for (p, q) in row.iter().zip(row.iter().skip(1)) {
+            for (p, q) in row.iter().zip(row.get(1..).unwrap_or_default()) {
                 largest[1] = gap(p, q).max(largest[1]);
             }
         }
     }
-    [largest[0] * m as u64, largest[1] * h as u64, largest[2] * m as u64]
+    [largest[0] * m as u32, largest[1] * h as u32, largest[2] * m as u32]
 }
 
 /// floor(slope with slack) + 1 steps.
-fn count(slope: u64) -> u32 {
+fn count(slope: u32) -> u32 {
     more_than(with_slack(slope))
 }
 
 /// floor(bound) + 1 steps.
-fn more_than(bound: u64) -> u32 {
-    ((bound >> 16) as u32).saturating_add(1).min(MAX_STEPS + 1)
+fn more_than(bound: u32) -> u32 {
+    (bound >> SHORT) + 1
 }
 
 /// The cheapest hole-free sampling of a piece, with the slack that seams between pieces need; `centres`: those of cells
@@ -75,7 +79,7 @@ pub(crate) fn piece_sampling(net: SurfaceNet<'_>, centres: bool) -> Sampling {
     if net.weights().is_some() {
         let plain = || Sampling { steps: Steps::hole_free(net), centres };
         let Sampling { steps, centres } = if centres { Sampling::cheapest(net) } else { plain() };
-        let more = |n: u32| (with_slack(n.into()) as u32 + 1).min(MAX_STEPS + 1);
+        let more = |n: u32| (with_slack(n) + 1).min(MAX_STEPS + 1);
         return Sampling { steps: Steps { r: more(steps.r), s: more(steps.s) }, centres };
     }
     let [x, y] = [slopes(&net, 0), slopes(&net, 1)];
@@ -88,7 +92,7 @@ pub(crate) fn piece_sampling(net: SurfaceNet<'_>, centres: bool) -> Sampling {
         return cheaper(net, Steps { r: fine, s: fine }, centres.then_some(Steps { r: coarse, s: coarse }));
     }
     let coarse = Steps { r: count(a), s: count(b) };
-    cheaper(net, tensor_steps(&net, a, b), centres.then_some(coarse))
+    cheaper(net, tensor_steps(net.points(), net.degrees(), a, b), centres.then_some(coarse))
 }
 
 fn cheaper(net: SurfaceNet<'_>, plain: Steps, coarse: Option<Steps>) -> Sampling {
@@ -118,30 +122,30 @@ impl Sampling {
 /// of |S_r|/n_r, |S_s|/n_s < 1; pairs that add up ask for p/n_r + q/n_s < 1. Three candidates: n_r : n_s = a : b
 /// ([`Steps::hole_free`]), the least n_r, the least n_s. With the slack d the sums have to be below 1 − d, which with the
 /// least n_r asks for n_s > q·n_r/((1 − d)·n_r − p).
-fn tensor_steps(net: &SurfaceNet<'_>, a: u64, b: u64) -> Steps {
-    let used = 64 - (a | b).leading_zeros();
-    let shift = used.saturating_sub(15);
-    let short = |magnitude: u64| (magnitude >> shift) as u32 + 1;
-    let (along_r, along_s) = (short(a), short(b));
-    let least = [along_r, along_s].map(|bound| count(u64::from(bound) << shift));
+fn tensor_steps(points: &[Point3], degrees: (usize, usize), a: u32, b: u32) -> Steps {
+    let shift = (32 - (a | b).leading_zeros()).saturating_sub(15);
+    let [along_r, along_s] = [a, b].map(|bound| (bound >> shift) + 1);
+    let least = [along_r, along_s].map(|bound| count(bound << shift));
     // In the unit of p and q.
-    let scaled = least.map(|n| ((u64::from(n) << 16) >> shift) as u32);
+    let scaled = least.map(|n| (n << SHORT) >> shift);
     let [room_r, room_s] = scaled.map(|n| n - (n >> 8) - (n >> 11) - 1);
     let mut diagonals = [Diagonal::default(); 2];
-    for axis in 0..2 {
-        each_slope(net, axis, |by_r, by_s| {
-            let (p, q) = (short(by_r.unsigned_abs()), short(by_s.unsigned_abs()));
-            let diagonal = &mut diagonals[usize::from((by_r < 0) == (by_s < 0))];
-            diagonal.sum = diagonal.sum.max(p * along_s + q * along_r);
-            diagonal.for_s.raise(q, room_r.saturating_sub(p));
-            diagonal.for_r.raise(p, room_s.saturating_sub(q));
-        });
+    let pair = |by_r: i32, by_s: i32| {
+        let [p, q] = [by_r, by_s].map(|slope| ((slope.unsigned_abs() + MAX_DEGREE as u32) >> shift) + 1);
+        let diagonal = &mut diagonals[usize::from((by_r < 0) == (by_s < 0))];
+        diagonal.sum = diagonal.sum.max(p * along_s + q * along_r);
+        diagonal.for_s.raise(q, room_r.saturating_sub(p));
+        diagonal.for_r.raise(p, room_s.saturating_sub(q));
+    };
+    match degrees {
+        (3, 3) => each_pair(points, (3, 3), pair),
+        degrees => each_pair(points, degrees, pair),
     }
     let candidates = diagonals.into_iter().flat_map(|diagonal| {
         let k = diagonal.sum.max(along_r * along_s);
-        let balanced = |other: u32| count((u64::from(k) << shift).checked_div(other.into()).unwrap_or(0));
+        let balanced = |other: u32| count(k.checked_div(other).unwrap_or(0) << shift);
         let beside = |ratio: Ratio, other: u32, least: u32| {
-            ratio.times(other).map_or(MAX_STEPS + 1, |bound| more_than(u64::from(bound) << shift).max(least))
+            ratio.times(other).map_or(MAX_STEPS + 1, |bound| more_than(bound << shift).max(least))
         };
         [
             Steps { r: balanced(along_s), s: balanced(along_r) },
@@ -151,6 +155,26 @@ fn tensor_steps(net: &SurfaceNet<'_>, a: u64, b: u64) -> Steps {
     });
     let points = |steps: &Steps| u64::from(steps.r + 1) * u64::from(steps.s + 1);
     candidates.min_by_key(points).unwrap_or(Steps { r: MAX_STEPS + 1, s: MAX_STEPS + 1 })
+}
+
+/// Calls `f` for the Bernstein coefficients of S_r and S_s along x and y, both of degree (m, h), in 2^-9; each is less than
+/// eight units off.
+#[inline(always)]
+fn each_pair(points: &[Point3], (m, h): (usize, usize), mut f: impl FnMut(i32, i32)) {
+    for axis in 0..2 {
+        let at = |i: usize, j: usize| points.get(i * (h + 1) + j).map_or(0, |p| short(p, axis));
+        for i in 0..=m {
+            for j in 0..=h {
+                let here = at(i, j);
+                // Elevation: k·e_(k−1) + (n − k)·e_k of the differences e.
+                let before = if i > 0 { i as i32 * (here - at(i - 1, j)) } else { 0 };
+                let by_r = if i < m { before + (m - i) as i32 * (at(i + 1, j) - here) } else { before };
+                let before = if j > 0 { j as i32 * (here - at(i, j - 1)) } else { 0 };
+                let by_s = if j < h { before + (h - j) as i32 * (at(i, j + 1) - here) } else { before };
+                f(by_r, by_s);
+            }
+        }
+    }
 }
 
 /// What the pairs that add up along one diagonal ask for.
@@ -181,26 +205,9 @@ impl Ratio {
         }
     }
 
-    /// The ratio times a 16-bit factor, rounded up; `None` for infinity, or more than 32 bits.
+    /// The ratio times a 16-bit factor, rounded up; `None` for infinity, or more than 2^16.
     fn times(self, factor: u32) -> Option<u32> {
-        (self.numerator * factor).checked_div(self.denominator)?.checked_add(1)
-    }
-}
-
-/// Calls `f` for the Bernstein coefficients of S_r and S_s along one axis, both of degree (m, h), in 2^-16.
-fn each_slope(net: &SurfaceNet<'_>, axis: usize, mut f: impl FnMut(i64, i64)) {
-    let (points, (m, h)) = (net.points(), net.degrees());
-    let at = |i: usize, j: usize| points.get(i * (h + 1) + j).map_or(0, |p| bits(p, axis));
-    for i in 0..=m {
-        for j in 0..=h {
-            let here = at(i, j);
-            // Elevation: k·e_(k−1) + (n − k)·e_k of the differences e.
-            let before = if i > 0 { i as i64 * (here - at(i - 1, j)) } else { 0 };
-            let by_r = if i < m { before + (m - i) as i64 * (at(i + 1, j) - here) } else { before };
-            let before = if j > 0 { j as i64 * (here - at(i, j - 1)) } else { 0 };
-            let by_s = if j < h { before + (h - j) as i64 * (at(i, j + 1) - here) } else { before };
-            f(by_r, by_s);
-        }
+        (self.numerator * factor).checked_div(self.denominator).map(|ratio| ratio + 1).filter(|ratio| *ratio < 1 << 16)
     }
 }
 
@@ -221,12 +228,12 @@ pub(crate) fn piece_turn(net: &SurfaceNet<'_>, sampling: Sampling) -> u8 {
 
 /// K: the longest step of any coordinate in whole units, rounded up, at least 1.
 fn longest_step(net: &SurfaceNet<'_>, (r, s): (u32, u32)) -> u32 {
-    let units = |slope: u64, steps: u32| slope.div_ceil(u64::from(steps.max(1)) << 16);
+    let units = |slope: u32, steps: u32| (slope >> SHORT).checked_div(steps).unwrap_or(slope >> SHORT) + 1;
     let longest = (0..3).map(|axis| {
         let [a, b, _] = slopes(net, axis);
         units(a, r).max(units(b, s))
     });
-    longest.max().unwrap_or(0).max(1).min(1 << 16) as u32
+    longest.max().unwrap_or(1).min(1 << 16)
 }
 
 /// The budget of a polynomial piece: 32 bits where the net, rounded to at least [`LEAST_FRACTION`] bits, fits and the

@@ -43,6 +43,20 @@ impl PixelBox {
     }
 }
 
+/// Whether the box of a piece has pixels in an area.
+fn meets(piece: SurfaceNet<'_>, area: &Area) -> bool {
+    let overlaps = |start: i32, length: u32, c: &dyn Fn(&Point3) -> i32| {
+        let (mut low, mut high) = (i32::MAX, i32::MIN);
+        for p in piece.points() {
+            (low, high) = (low.min(c(p)), high.max(c(p)));
+        }
+        // Rounded half up; legal coordinates leave room.
+        let [low, high] = [low, high].map(|c| (c + (1 << 15)) >> 16);
+        high >= start && i64::from(low) < i64::from(start) + i64::from(length)
+    };
+    overlaps(area.y, area.height, &|p| p.y.to_bits()) && overlaps(area.x, area.width, &|p| p.x.to_bits())
+}
+
 /// Patches in screen coordinates, a light and a style; checked once, so that drawing cannot fail.
 ///
 /// ```
@@ -184,8 +198,7 @@ struct Filling<'s, 'b, 't, P: Paint> {
 
 impl<P: Paint> Pieces for Filling<'_, '_, '_, P> {
     fn wants(&mut self, piece: SurfaceNet<'_>) -> bool {
-        PixelBox::of(&piece.bounds()).meets(&self.tile.area(), 0)
-            && (self.cull == Cull::None || !faces_away(&piece, self.inward))
+        meets(piece, &self.tile.area()) && (self.cull == Cull::None || !faces_away(&piece, self.inward))
     }
 
     fn piece(&mut self, piece: SurfaceNet<'_>, sampling: Sampling, room: &mut [Point3]) {

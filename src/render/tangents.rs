@@ -1,13 +1,13 @@
 //! Tangents of a polynomial piece where they are wanted: at points that pass the depth test.
 //!
 //! Positions may come from a rounded net; tangents come from the piece's own net with all its bits. Bernstein weights
-//! have 30 fraction bits, control differences 32 bits and a sign, their sums of products at most 62: exact in `i64`. A
+//! have 30 fraction bits, halves of control differences 31 bits and a sign, their sums of products at most 61: exact in
+//! `i64`. A
 //! sum is then cut to 30 bits once, so a tangent is within 2^-27 of the longest of its row.
 
 use super::pen::unturned;
 use crate::forward::{Form, Kind};
 use crate::geometry::Point3;
-use crate::num::Coord;
 use crate::patch::{MAX_DEGREE, SurfaceNet, triangle_index};
 
 /// Room for the weights of a curve.
@@ -51,6 +51,13 @@ impl Weights {
     fn of(degree: usize, t: u32) -> Self {
         let rest = (1 << FRACTION) - t;
         let mut weights = Self { here: [0; ORDER], below: [0; ORDER] };
+        if degree == 3 {
+            let (tt, ss, ts) = (times(t, t), times(rest, rest), times(t, rest));
+            let (tts, sst) = (times(ts, t), times(ts, rest));
+            weights.below[..3].copy_from_slice(&[ss, 2 * ts, tt]);
+            weights.here[..4].copy_from_slice(&[ss - sst, 3 * sst, 3 * tts, tt - tts]);
+            return weights;
+        }
         weights.here[0] = 1 << FRACTION;
         for d in 1..=degree.min(MAX_DEGREE) {
             weights.below = weights.here;
@@ -64,12 +71,13 @@ impl Weights {
     }
 }
 
-/// Σ weight·(to − from) along the three axes.
+/// Σ weight·(to − from)/2 along the three axes; halves of differences fit 32 bits.
+#[inline(always)]
 fn add(sum: &mut [i64; 3], weight: u32, to: Option<&Point3>, from: Option<&Point3>) {
     let (Some(to), Some(from)) = (to, from) else { return };
-    let weight = i64::from(weight);
+    let weight = i64::from(weight as i32);
     for (sum, (to, from)) in sum.iter_mut().zip(to.to_array().into_iter().zip(from.to_array())) {
-        *sum += weight * (to.bits() - from.bits());
+        *sum += weight * i64::from((to.to_bits() >> 1) - (from.to_bits() >> 1));
     }
 }
 
