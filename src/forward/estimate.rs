@@ -24,22 +24,16 @@ const DROP: u32 = 9;
 impl Estimate {
     /// Cost: about 30 additions per control point of a bicubic.
     pub(crate) fn of(net: SurfaceNet<'_>) -> Self {
-        match net.degrees() {
-            (3, 3) => Self::with_degrees(net.points(), (3, 3)),
-            degrees => Self::with_degrees(net.points(), degrees),
-        }
-    }
-
-    #[inline(always)]
-    fn with_degrees(points: &[Point3], (m, h): (usize, usize)) -> Self {
+        let (m, h) = net.degrees();
+        let points = net.points();
         let mut estimate = Self { degrees: (m, h), ..Self::default() };
         for axis in 0..2 {
-            let at = |a: usize, b: usize| {
-                points.get(a * (h + 1) + b).map_or(0, |p| {
-                    let c = if axis == 0 { p.x } else { p.y };
-                    c.to_bits() >> DROP
-                })
-            };
+            let short = |p: &Point3| (if axis == 0 { p.x } else { p.y }).to_bits() >> DROP;
+            if let Some(points) = points.first_chunk::<16>().filter(|_| (m, h) == (3, 3)) {
+                estimate.add_bicubic(axis, points.each_ref().map(short));
+                continue;
+            }
+            let at = |a: usize, b: usize| points.get(a * (h + 1) + b).map_or(0, short);
             for b in 0..=h {
                 estimate.add(axis, (0, 0), (0..m).map(|a| at(a + 1, b) - at(a, b)));
             }
@@ -56,8 +50,41 @@ impl Estimate {
         estimate
     }
 
+    /// [`of`](Self::of) for a bicubic.
+    fn add_bicubic(&mut self, axis: usize, v: [i32; 16]) {
+        for k in 0..4 {
+            let column = [v[k], v[4 + k], v[8 + k], v[12 + k]];
+            let row = [v[4 * k], v[4 * k + 1], v[4 * k + 2], v[4 * k + 3]];
+            for (way, [a, b, c, d]) in [(0, column), (1, row)] {
+                let [u, v, w] = [b - a, c - b, d - c];
+                let middle = (u + 2 * v + w) >> 3;
+                self.raise(axis, (way, way), [[u >> 1, (u + v) >> 2, middle], [w >> 1, (v + w) >> 2, middle]]);
+            }
+        }
+        for k in 0..3 {
+            let across = |at: usize, step: usize| v[(at + step) & 15] - v[at & 15];
+            let rows: [i32; 4] = core::array::from_fn(|j| across(4 * k + j, 4));
+            let columns: [i32; 4] = core::array::from_fn(|i| across(4 * i + k, 1));
+            for (way, [a, b, c, d]) in [((0, 1), rows), ((1, 0), columns)] {
+                let middle = (a + 3 * (b + c) + d) >> 3;
+                let (first, second) = ([(a + b) >> 1, (a + 2 * b + c) >> 2], [(c + d) >> 1, (b + 2 * c + d) >> 2]);
+                self.raise(axis, way, [[a, first[0], first[1]], [d, second[0], second[1]]]);
+                self.raise(axis, way, [[middle; 3]; 2]);
+            }
+        }
+    }
+
+    /// Takes account of differences along direction `of` of the two halves along direction `along`.
+    fn raise(&mut self, axis: usize, (of, along): (usize, usize), halves: [[i32; 3]; 2]) {
+        let Some(spans) = self.halves.get_mut(along) else { return };
+        for (spans, values) in spans.iter_mut().zip(halves) {
+            if let Some(span) = spans.get_mut(axis).and_then(|spans| spans.get_mut(of)) {
+                *span = values.iter().fold(*span, |most, v| v.unsigned_abs().max(most));
+            }
+        }
+    }
+
     /// Takes account of a row of differences along direction `of`, as they follow each other along direction `along`.
-    #[inline(always)]
     fn add(&mut self, axis: usize, way: (usize, usize), differences: impl Iterator<Item = i32>) {
         let mut values = [0; MAX_DEGREE + 1];
         let mut count = 0;
@@ -65,35 +92,15 @@ impl Estimate {
             *value = difference;
             count += 1;
         }
-        self.add_values(axis, way, &mut values, count);
-    }
-
-    #[inline(always)]
-    fn add_values(
-        &mut self,
-        axis: usize,
-        (of, along): (usize, usize),
-        values: &mut [i32; MAX_DEGREE + 1],
-        count: usize,
-    ) {
         // Differences along the direction that is halved are half as long.
-        let shift = u32::from(of == along);
-        let (mut first, mut second) = (0, 0);
+        let shift = u32::from(way.0 == way.1);
         for level in 0..count {
             let last = count - 1 - level;
             let (Some(left), Some(right)) = (values.first().copied(), values.get(last).copied()) else { return };
-            let least = level as u32 + shift;
-            first = first.max(left.unsigned_abs() >> least);
-            second = second.max(right.unsigned_abs() >> least);
+            let halved = level as u32 + shift;
+            self.raise(axis, way, [[left >> halved; 3], [right >> halved; 3]]);
             for k in 0..last.min(MAX_DEGREE) {
                 values[k] += values[k + 1];
-            }
-        }
-        if let Some([one, two]) = self.halves.get_mut(along) {
-            for (spans, most) in [(one, first), (two, second)] {
-                if let Some(span) = spans.get_mut(axis).and_then(|spans| spans.get_mut(of)) {
-                    *span = most.max(*span);
-                }
             }
         }
     }

@@ -40,7 +40,14 @@ fn slopes(net: &SurfaceNet<'_>, axis: usize) -> Slopes {
     let (points, (m, h)) = (net.points(), net.degrees());
     let gap = |a: &Point3, b: &Point3| short(a, axis).abs_diff(short(b, axis)) + 1;
     let mut largest = [0; 3];
-    if net.is_triangle() {
+    if let Some(points) = points.first_chunk::<16>().filter(|_| (m, h) == (3, 3) && !net.is_triangle()) {
+        let values = points.each_ref().map(|p| short(p, axis));
+        let along_r = values.iter().zip(&values[4..]).fold(0, |most: u32, (a, b)| a.abs_diff(*b).max(most));
+        let rows = values.as_chunks::<4>().0.iter();
+        let along_s =
+            rows.fold(0, |most: u32, [a, b, c, d]| most.max(a.abs_diff(*b)).max(b.abs_diff(*c)).max(c.abs_diff(*d)));
+        largest = [along_r + 1, along_s + 1, 0];
+    } else if net.is_triangle() {
         for row in 0..m {
             let above = points.get(triangle_index(row, 0)..).unwrap_or_default();
             let below = points.get(triangle_index(row + 1, 0)..).unwrap_or_default();
@@ -137,9 +144,9 @@ fn tensor_steps(points: &[Point3], degrees: (usize, usize), a: u32, b: u32) -> S
         diagonal.for_s.raise(q, room_r.saturating_sub(p));
         diagonal.for_r.raise(p, room_s.saturating_sub(q));
     };
-    match degrees {
-        (3, 3) => each_pair(points, (3, 3), pair),
-        degrees => each_pair(points, degrees, pair),
+    match points.first_chunk::<16>().filter(|_| degrees == (3, 3)) {
+        Some(points) => each_bicubic_pair(points, pair),
+        None => each_pair(points, degrees, pair),
     }
     let candidates = diagonals.into_iter().flat_map(|diagonal| {
         let k = diagonal.sum.max(along_r * along_s);
@@ -157,9 +164,27 @@ fn tensor_steps(points: &[Point3], degrees: (usize, usize), a: u32, b: u32) -> S
     candidates.min_by_key(points).unwrap_or(Steps { r: MAX_STEPS + 1, s: MAX_STEPS + 1 })
 }
 
+/// [`each_pair`] for a bicubic.
+fn each_bicubic_pair(points: &[Point3; 16], mut f: impl FnMut(i32, i32)) {
+    // Elevated differences of a row or column of four.
+    let elevated = |[a, b, c, d]: [i32; 4]| {
+        let [u, v, w] = [b - a, c - b, d - c];
+        [3 * u, u + 2 * v, 2 * v + w, 3 * w]
+    };
+    for axis in 0..2 {
+        let values = points.each_ref().map(|p| short(p, axis));
+        let by_r: [[i32; 4]; 4] =
+            core::array::from_fn(|j| elevated([values[j], values[4 + j], values[8 + j], values[12 + j]]));
+        for (i, row) in values.as_chunks::<4>().0.iter().enumerate() {
+            for (column, by_s) in by_r.iter().zip(elevated(*row)) {
+                f(column[i & 3], by_s);
+            }
+        }
+    }
+}
+
 /// Calls `f` for the Bernstein coefficients of S_r and S_s along x and y, both of degree (m, h), in 2^-9; each is less than
 /// eight units off.
-#[inline(always)]
 fn each_pair(points: &[Point3], (m, h): (usize, usize), mut f: impl FnMut(i32, i32)) {
     for axis in 0..2 {
         let at = |i: usize, j: usize| points.get(i * (h + 1) + j).map_or(0, |p| short(p, axis));
@@ -226,14 +251,11 @@ pub(crate) fn piece_turn(net: &SurfaceNet<'_>, sampling: Sampling) -> u8 {
     if y[2] < y[0].min(y[1]) { 2 } else { (y[1] < y[0]).into() }
 }
 
-/// K: the longest step of any coordinate in whole units, rounded up, at least 1.
+/// K: the longest step of any coordinate in whole units, rounded up, at least 1. Steps of x and y are below 1.
 fn longest_step(net: &SurfaceNet<'_>, (r, s): (u32, u32)) -> u32 {
     let units = |slope: u32, steps: u32| (slope >> SHORT).checked_div(steps).unwrap_or(slope >> SHORT) + 1;
-    let longest = (0..3).map(|axis| {
-        let [a, b, _] = slopes(net, axis);
-        units(a, r).max(units(b, s))
-    });
-    longest.max().unwrap_or(1).min(1 << 16)
+    let [a, b, _] = slopes(net, 2);
+    units(a, r).max(units(b, s)).min(1 << 16)
 }
 
 /// The budget of a polynomial piece: 32 bits where the net, rounded to at least [`LEAST_FRACTION`] bits, fits and the
@@ -258,11 +280,27 @@ pub(crate) fn deepest_budget(net: SurfaceNet<'_>, sampling: Sampling, depth: u32
     budget(&Form::surface(net, steps), largest_step, 16).map(drop)
 }
 
+/// n^exponent, in 64 bits while it fits.
+fn power(n: u32, exponent: usize) -> Option<u128> {
+    let (n, mut power, mut left) = (u64::from(n), 1_u64, exponent);
+    while left > 0 {
+        match power.checked_mul(n) {
+            Some(next) => power = next,
+            None => return u128::from(power).checked_mul(u128::from(n).checked_pow(left as u32)?),
+        }
+        left -= 1;
+    }
+    Some(power.into())
+}
+
 /// The budget of a net that uses so many fraction bits.
 fn budget(form: &Form<'_>, largest_step: u32, used: u32) -> Result<Budget, LatticeError> {
     let (r, s) = form.table_steps();
-    let along_s = if form.kind == Kind::Tensor { u128::from(s).checked_pow(form.degrees.1 as u32) } else { Some(1) };
-    let cells = u128::from(r).checked_pow(form.degrees.0 as u32).and_then(|r| r.checked_mul(along_s?));
+    let exponent = if form.kind == Kind::Tensor { form.degrees.1 } else { 0 };
+    let cells = power(r, form.degrees.0).zip(power(s, exponent)).and_then(|(r, s)| {
+        let short = u64::try_from(r).ok().zip(u64::try_from(s).ok()).and_then(|(r, s)| r.checked_mul(s));
+        short.map(u128::from).or_else(|| r.checked_mul(s))
+    });
     let least = used.min(LEAST_FRACTION);
     let values = cells.and_then(|cells| cells.checked_mul(2 * u128::from(largest_step) + 1));
     let free = values.map_or(0, u128::leading_zeros);

@@ -35,27 +35,24 @@ struct Cone {
 
 impl Cone {
     /// A cone that holds all vectors of `each`, which are not all zero; `None` where none was found.
-    fn around(each: impl Fn(&mut dyn FnMut(Vector))) -> Option<Self> {
-        let (mut cone, mut short): (Option<Self>, bool) = (None, true);
-        each(&mut |v| {
-            short &= v.iter().all(|c| c.abs() < LONGEST);
-            if !short || v == [0; 2] {
-                return;
+    fn around<I: Iterator<Item = Vector>>(each: impl Fn() -> I) -> Option<Self> {
+        let mut cone: Option<Self> = None;
+        for v in each() {
+            if v[0].abs() >= LONGEST || v[1].abs() >= LONGEST {
+                return None;
             }
             let Some(Self { right, left }) = &mut cone else {
-                cone = Some(Self { right: v, left: v });
-                return;
+                cone = (v != [0; 2]).then_some(Self { right: v, left: v });
+                continue;
             };
             if cross(*left, v) > 0 {
                 *left = v;
             } else if cross(v, *right) > 0 {
                 *right = v;
             }
-        });
-        let cone = cone.filter(|_| short)?;
-        let mut holds = cone.is_less_than_half();
-        each(&mut |v| holds &= cone.holds(v));
-        holds.then_some(cone)
+        }
+        let cone = cone.filter(Self::is_less_than_half)?;
+        each().all(|v| cone.holds(v)).then_some(cone)
     }
 
     fn is_less_than_half(&self) -> bool {
@@ -80,36 +77,24 @@ impl Cone {
     }
 }
 
-/// Calls `f` for the differences along r, or along s: of a triangle along u and v, both from w.
-fn each_difference(net: &SurfaceNet<'_>, along_s: bool, f: &mut dyn FnMut(Vector)) {
-    let (points, (m, h)) = (net.points(), net.degrees());
-    let mut step = |from: usize, to: usize| {
-        if let (Some(from), Some(to)) = (points.get(from), points.get(to)) {
-            f(between(from, to));
-        }
-    };
+/// The differences along r, or along s: of a triangle along u and v, both from w.
+fn differences<'n>(net: &SurfaceNet<'n>, along_s: bool) -> impl Iterator<Item = Vector> + 'n {
+    let (points, (m, h), triangle) = (net.points(), net.degrees(), net.is_triangle());
     let mixes = net.weights().is_some();
-    if net.is_triangle() {
-        for row in 0..m {
-            for k in 0..=row {
-                let w = triangle_index(row - k, k + 1);
-                let to = if along_s { triangle_index(row + 1 - k, k) } else { triangle_index(row - k, k) };
-                step(w, to);
-            }
-        }
-        return;
-    }
-    let (across, last) = if along_s { (m, h) } else { (h, m) };
-    let index = |a: usize, b: usize| if along_s { b * (h + 1) + a } else { a * (h + 1) + b };
-    for a in 0..last {
-        for b in 0..=across {
-            if mixes {
-                (0..=across).for_each(|c| step(index(a, b), index(a + 1, c)));
-            } else {
-                step(index(a, b), index(a + 1, b));
-            }
-        }
-    }
+    let (across, last) = if along_s || triangle { (m, h) } else { (h, m) };
+    let mixed = if mixes { across + 1 } else { 1 };
+    let index = move |a: usize, b: usize| if along_s { b * (h + 1) + a } else { a * (h + 1) + b };
+    let pair = move |a: usize, b: usize, c: usize| {
+        let (from, to) = if triangle {
+            let from = triangle_index(a - b, b + 1);
+            (from, if along_s { triangle_index(a + 1 - b, b) } else { triangle_index(a - b, b) })
+        } else {
+            (index(a, b), index(a + 1, if mixes { c } else { b }))
+        };
+        Some(between(points.get(from)?, points.get(to)?))
+    };
+    let width = move |a: usize| if triangle { a } else { across };
+    (0..last).flat_map(move |a| (0..=width(a)).flat_map(move |b| (0..mixed).filter_map(move |c| pair(a, b, c))))
 }
 
 /// Whether no point of a piece faces the viewer: z of S_r × S_s is nowhere negative, or nowhere positive where that
@@ -118,8 +103,8 @@ pub(super) fn faces_away(net: &SurfaceNet<'_>, inward: bool) -> bool {
     if net.is_triangle() && net.weights().is_some() {
         return false;
     }
-    let Some(along_r) = Cone::around(|f| each_difference(net, false, f)) else { return false };
-    let Some(along_s) = Cone::around(|f| each_difference(net, true, f)) else { return false };
+    let Some(along_r) = Cone::around(|| differences(net, false)) else { return false };
+    let Some(along_s) = Cone::around(|| differences(net, true)) else { return false };
     let (never_negative, never_positive) = along_r.signs(&along_s);
     if inward { never_positive } else { never_negative }
 }

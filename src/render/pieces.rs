@@ -12,7 +12,7 @@ use crate::patch::{MAX_DEGREE, SurfaceNet};
 use crate::subdivide::{Cut, Direction, Half, Quarter, Source, part_net};
 
 /// What setting up a piece costs, in points.
-const SETUP: u64 = 24;
+const SETUP: u64 = 16;
 
 /// How often a patch is split at most on the way to a piece.
 pub(super) const DEPTH: usize = 8;

@@ -45,16 +45,17 @@ impl PixelBox {
 
 /// Whether the box of a piece has pixels in an area.
 fn meets(piece: SurfaceNet<'_>, area: &Area) -> bool {
-    let overlaps = |start: i32, length: u32, c: &dyn Fn(&Point3) -> i32| {
-        let (mut low, mut high) = (i32::MAX, i32::MIN);
-        for p in piece.points() {
-            (low, high) = (low.min(c(p)), high.max(c(p)));
-        }
+    let (mut x, mut y) = ((i32::MAX, i32::MIN), (i32::MAX, i32::MIN));
+    for p in piece.points() {
+        x = (x.0.min(p.x.to_bits()), x.1.max(p.x.to_bits()));
+        y = (y.0.min(p.y.to_bits()), y.1.max(p.y.to_bits()));
+    }
+    let overlaps = |(low, high): (i32, i32), start: i32, length: u32| {
         // Rounded half up; legal coordinates leave room.
         let [low, high] = [low, high].map(|c| (c + (1 << 15)) >> 16);
         high >= start && i64::from(low) < i64::from(start) + i64::from(length)
     };
-    overlaps(area.y, area.height, &|p| p.y.to_bits()) && overlaps(area.x, area.width, &|p| p.x.to_bits())
+    overlaps(y, area.y, area.height) && overlaps(x, area.x, area.width)
 }
 
 /// Patches in screen coordinates, a light and a style; checked once, so that drawing cannot fail.

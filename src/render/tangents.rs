@@ -132,26 +132,33 @@ impl<'a> Tangents<'a> {
         [dot(&weights.below[..m], &self.by_r), dot(&weights.here[..m + 1], &self.by_s)]
     }
 
-    /// The control vectors along the row at parameter `s`.
+    /// The control vectors along the row at parameter `s`: differences of its control values, and Σ of those across it.
     #[inline(never)]
     fn collapse(&mut self, s: u32) {
         let (m, h) = self.degrees;
         let weights = Weights::of(h, s);
-        let point = |a: usize, b: usize| self.net.points().get(a * self.strides.0 + b * self.strides.1);
-        let mut sums = [[0_i64; 3]; ORDER];
-        for (a, sum) in sums.iter_mut().enumerate().take(m) {
-            for (b, weight) in weights.here.iter().enumerate().take(h + 1) {
-                add(sum, *weight, point(a + 1, b), point(a, b));
+        let (mut along, mut across) = ([[0_i64; 3]; ORDER], [[0_i64; 3]; ORDER]);
+        for (a, (along, across)) in along.iter_mut().zip(&mut across).enumerate().take(m + 1) {
+            let mut before = [0; 3];
+            for b in 0..=h {
+                let Some(p) = self.net.points().get(a * self.strides.0 + b * self.strides.1) else { return };
+                // Halves of coordinates have 31 bits, of their differences 32.
+                let here = [p.x, p.y, p.z].map(|c| c.to_bits() >> 1);
+                let weight = weights.here.get(b).map_or(0, |w| i64::from(*w as i32));
+                let below = b.checked_sub(1).and_then(|b| weights.below.get(b)).map_or(0, |w| i64::from(*w as i32));
+                for axis in 0..3 {
+                    along[axis] += weight * i64::from(here[axis]);
+                    across[axis] += below * i64::from(here[axis] - before[axis]);
+                }
+                before = here;
             }
         }
-        shorten(&sums, &mut self.by_r);
-        let mut sums = [[0_i64; 3]; ORDER];
-        for (a, sum) in sums.iter_mut().enumerate().take(m + 1) {
-            for (b, weight) in weights.below.iter().enumerate().take(h) {
-                add(sum, *weight, point(a, b + 1), point(a, b));
-            }
+        for a in 0..m.min(MAX_DEGREE) {
+            along[a] = core::array::from_fn(|axis| along[a + 1][axis] - along[a][axis]);
         }
-        shorten(&sums, &mut self.by_s);
+        let (m, n) = (m.min(ORDER), (m + 1).min(ORDER));
+        shorten(&along[..m], &mut self.by_r);
+        shorten(&across[..n], &mut self.by_s);
     }
 }
 
@@ -223,11 +230,15 @@ pub(super) fn row_range(form: &Form<'_>, j: u32) -> (i64, i64) {
         }
         return (low >> FRACTION, high >> FRACTION);
     }
+    let (along, across) = if form.turn() == 0 { (h + 1, 1) } else { (1, m + 1) };
     let mut range = (i64::MAX, i64::MIN);
     for a in 0..=m {
-        let terms = weights.iter().enumerate().take(h + 1);
-        let value = terms.map(|(b, weight)| i64::from(*weight) * form.bits(1, a, b)).sum::<i64>() >> FRACTION;
+        let mut value = 0;
+        for (b, weight) in weights.iter().enumerate().take(h + 1) {
+            let y = form.points().get(a * along + b * across).map_or(0, |p| p.y.to_bits());
+            value += i64::from(*weight as i32) * i64::from(y);
+        }
         range = (range.0.min(value), range.1.max(value));
     }
-    range
+    (range.0 >> FRACTION, range.1 >> FRACTION)
 }
