@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test binary uses a part")]
 
 pub(crate) mod basis;
+pub(crate) mod blossom;
 pub(crate) mod draw;
 
 use embedded_surfaces::geometry::Point3;
