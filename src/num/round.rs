@@ -18,6 +18,20 @@ pub(crate) const fn div_half_up(value: i128, divisor: i128) -> Option<i128> {
     (2 * value + divisor).checked_div_euclid(2 * divisor)
 }
 
+/// `ceil(value / divisor)`; `u128::MAX` for the divisor 0.
+pub(crate) const fn div_up(value: u128, divisor: u128) -> u128 {
+    match (value.checked_div(divisor), value.checked_rem(divisor)) {
+        (Some(quotient), Some(rest)) => quotient + (rest > 0) as u128,
+        _ => u128::MAX,
+    }
+}
+
+/// `ceil(sqrt(value))`, for every value below 2^126. In 64 bits where they suffice.
+pub(crate) const fn sqrt_up(value: u128) -> u128 {
+    let root = if value <= u64::MAX as u128 { (value as u64).isqrt() as u128 } else { value.isqrt() };
+    root + (root * root < value) as u128
+}
+
 /// Binomial coefficients: `BINOMIAL[n][k]` = C(n, k), n ≤ 16; 0 for k > n.
 pub(crate) const BINOMIAL: [[u16; 17]; 17] = {
     let mut table = [[0; 17]; 17];
@@ -64,6 +78,17 @@ mod tests {
         assert_eq!(div_half_up(-5, 2), Some(-2));
         assert_eq!(div_half_up(5, 2), Some(3));
         assert_eq!(div_half_up(1, 0), None);
+    }
+
+    #[test]
+    fn quotients_and_roots_go_up() {
+        assert_eq!([div_up(6, 3), div_up(7, 3), div_up(0, 3), div_up(1, 0)], [2, 3, 0, u128::MAX]);
+        for root in [0, 1, 2, 3, 65_536, (1 << 32) - 1, 1 << 32, (1 << 63) - 1] {
+            let square: u128 = root * root;
+            assert_eq!(sqrt_up(square), root);
+            assert_eq!(sqrt_up(square + 1), root + 1);
+            assert_eq!(sqrt_up(square + 2 * root), root + u128::from(root > 0));
+        }
     }
 
     #[test]

@@ -4,6 +4,7 @@
 pub(crate) mod basis;
 pub(crate) mod blossom;
 pub(crate) mod draw;
+pub(crate) mod smooth;
 
 use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::num::I16F16;
