@@ -335,6 +335,62 @@ proptest! {
         }
     }
 
+    /// Of all pairs of depths that satisfy the bound, the documented one.
+    #[test]
+    fn the_depths_are_the_least_pair(((m, h), points) in tensor(), bits in (0..26).prop_flat_map(|s| 1_i32..=1 << s)) {
+        let ours = SurfaceNet::Tensor(TensorNet::new((m, h), &points).unwrap()).depths_for(tolerance(bits));
+        let (_, second) = tensor_differences((m, h), &self::bits(&points));
+        let factors = [m * (m - 1), m * h, h * (h - 1)].map(|f| f as u128);
+        let root = |square: u128| square.isqrt() + u128::from(square.isqrt().pow(2) < square);
+        let [rr, rs, ss]: [u128; 3] = std::array::from_fn(|d| root(factors[d].pow(2) * second[d].unsigned_abs()));
+        let fits = |[r, s]: [u32; 2]| {
+            (rr << (2 * s)) + (rs << (r + s + 1)) + (ss << (2 * r)) <= (bits as u128) << (2 * (r + s) + 3)
+        };
+        let all = (0..=16).flat_map(|r| (0..=16).map(move |s| [r, s]));
+        let least = all.filter(|pair| fits(*pair)).min_by_key(|[r, s]| (r + s, r.abs_diff(*s), *r));
+        let uniform = (0..=20).find(|m| fits([*m, *m])).unwrap();
+        if uniform > 16 {
+            prop_assert_eq!(ours, Err(SubdivideError::TooDeep { needed: uniform, limit: 16 }));
+        } else {
+            prop_assert_eq!(ours.ok(), least);
+        }
+    }
+
+    /// With equal weights the bound of a rational triangle is the one of right triangles, least over its corners.
+    #[test]
+    fn equal_weights_give_the_bound_of_right_triangles((n, points) in triangle(), weight in 1_i32..) {
+        let (net, weights) = (bits(&points), vec![I16F16::from_bits(weight); points.len()]);
+        let up = |at: (usize, usize, usize), corner: usize| match corner {
+            0 => (at.0 + 1, at.1, at.2),
+            1 => (at.0, at.1 + 1, at.2),
+            _ => (at.0, at.1, at.2 + 1),
+        };
+        // The largest component of each axis, as one vector.
+        let length = |(from, to): (usize, usize), (from2, to2): (usize, usize)| {
+            let mut largest = [0.0_f64; 3];
+            for at in n.checked_sub(2).into_iter().flat_map(triangle_indices) {
+                let index = |p, q| triangle_index(n, up(up(at, p), q));
+                let terms = [(1, index(to, to2)), (-1, index(to, from2)), (-1, index(from, to2)), (1, index(from, from2))];
+                let v = sum(&net, &terms);
+                (0..3).for_each(|a| largest[a] = largest[a].max(v[a].abs() as f64));
+            }
+            largest.iter().map(|c| c * c).sum::<f64>().sqrt()
+        };
+        let at = |c: usize, a: usize, b: usize| {
+            let (one, two) = ((c, a), (c, b));
+            length(one, one) + 2.0 * length(one, two) + length(two, two)
+        };
+        let bound = at(0, 1, 2).min(at(1, 2, 0)).min(at(2, 0, 1)) * (n * (n - 1)) as f64 / 8.0 / 65536.0;
+        let surface = TriangleNet::new(n, &points).unwrap();
+        let surface = SurfaceNet::RationalTriangle(RationalTriangleNet::new(surface, &weights).unwrap());
+        let span = surface.bounds();
+        let extents = [(span.min.x, span.max.x), (span.min.y, span.max.y), (span.min.z, span.max.z)];
+        let squares = extents.map(|(low, high)| (f64::from(high.to_bits()) - f64::from(low.to_bits())).powi(2));
+        let bound = bound.min(squares.iter().sum::<f64>().sqrt() / 65536.0);
+        let ours = to_f64(surface.flatness());
+        prop_assert!((ours - bound).abs() <= bound * SLACK + 4.0 / 65536.0, "{ours} {bound}");
+    }
+
     /// The closed form of q, by a fine grid; bounds of heights that bend one way are attained.
     #[test]
     fn the_closed_form_is_the_largest_mean(a in 0_i32..4000, b in 0_i32..4000, c in 0_i32..4000) {
