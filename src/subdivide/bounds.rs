@@ -7,7 +7,7 @@
 use super::curvature::Curvature;
 use super::stencil::{Along, EDGES, Net, Shape};
 use super::{SubdivideError, Tolerance};
-use crate::num::{I32F32, div_up, sqrt_up};
+use crate::num::{I32F32, div_up, shift_up, sqrt_up};
 use crate::patch::{CurveNet, RationalCurveNet, SurfaceNet, TensorNet, TriangleNet};
 
 /// The most levels of subdivision that a depth may have: parameters have denominators up to 2^16.
@@ -185,7 +185,7 @@ impl SurfaceNet<'_> {
         let allowed = u128::from(tolerance.bits().unsigned_abs()) << 3;
         let fits = |r: u32, s: u32| {
             let left = (rr << (2 * s)) + (rs << (r + s + 1)) + (ss << (2 * r));
-            left.div_ceil(1 << (2 * (r + s))) <= allowed
+            shift_up(left, 2 * (r + s)) <= allowed
         };
         let (mut best, mut s) = ([uniform; 2], MAX_DEPTH);
         for r in 0..=MAX_DEPTH {
@@ -223,8 +223,8 @@ impl SurfaceNet<'_> {
 #[must_use]
 pub fn depth_by_edges(differences: &[I32F32], tolerance: Tolerance) -> u32 {
     let longest = differences.iter().map(|d| d.to_bits()).max().unwrap_or(0).max(0).unsigned_abs();
-    let allowed = tolerance.bits().unsigned_abs() << 16;
-    (0..63).find(|m| longest.div_ceil(1 << m) <= allowed).unwrap_or(63)
+    let allowed = u128::from(tolerance.bits().unsigned_abs()) << 16;
+    (0..63).find(|m| shift_up(longest.into(), *m) <= allowed).unwrap_or(63)
 }
 
 /// A length in 2^-16 units, at most the type's largest.
@@ -245,6 +245,7 @@ fn flatness(net: &Net<'_>) -> I32F32 {
 }
 
 /// The bound on the distance to the linear interpolant, in 2^-16 units, rounded up. It falls by 4 a level.
+#[inline(never)]
 fn bound(net: &Net<'_>) -> u128 {
     match (net.shape, net.weights) {
         (Shape::Triangle, None) => triangle_bound(net),
@@ -278,6 +279,6 @@ fn largest_mean(a: u128, b: u128, c: u128) -> u128 {
 /// The least m with bound ≤ tolerance·4^m.
 fn depth(bound: u128, tolerance: Tolerance) -> Result<u32, SubdivideError> {
     let allowed = u128::from(tolerance.bits().unsigned_abs());
-    let needed = (0..63).find(|m| bound.div_ceil(1 << (2 * m)) <= allowed).unwrap_or(63);
+    let needed = (0..63).find(|m| shift_up(bound, 2 * m) <= allowed).unwrap_or(63);
     if needed > MAX_DEPTH { Err(SubdivideError::TooDeep { needed, limit: MAX_DEPTH }) } else { Ok(needed) }
 }

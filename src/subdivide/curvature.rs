@@ -6,8 +6,8 @@
 //! S_xy·D = A_xy − S_x·D_y − S_y·D_x − (S − c)·D_xy, and S_x·D = A_x − (S − c)·D_x. With D ≥ the least weight and the
 //! largest differences of the homogeneous nets that is a bound; for equal weights it is the polynomial one.
 
-use super::stencil::{Along, Net};
-use crate::num::{Coord, div_up, sqrt_up};
+use super::stencil::{Along, Net, zip};
+use crate::num::{Coord, div_up, shift_up, sqrt_up};
 
 /// Bounds on |S_rr|, |S_rs| and |S_ss|, in 2^-16 units, rounded up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +19,7 @@ pub(super) struct Curvature {
 
 impl Curvature {
     /// Of a patch whose two parameters run along these directions.
+    #[inline(never)]
     pub(super) fn of(net: &Net<'_>, [r, s]: [Along; 2]) -> Self {
         if net.weights.is_some() {
             let net = Homogeneous::of(net);
@@ -46,6 +47,7 @@ fn factor(net: &Net<'_>, one: Along, two: Along) -> u128 {
     if matches!((one, two), (Along::R, Along::S)) { m * h } else { m * m.saturating_sub(1) }
 }
 
+#[inline(never)]
 fn polynomial(net: &Net<'_>, one: Along, two: Along) -> u128 {
     let factor = factor(net, one, two);
     // Below 2^(70 + 12).
@@ -76,44 +78,42 @@ impl<'n, 'a> Homogeneous<'n, 'a> {
         let least = net.weights.into_iter().flatten().map(|w| w.bits()).min().unwrap_or(1).max(1);
         Self {
             net,
-            centre: core::array::from_fn(|a| low[a].saturating_add(high[a])),
+            centre: zip(low, high, i64::saturating_add),
             radius: net.diagonal(),
             least_weight: least.unsigned_abs().into(),
         }
     }
 
-    /// The components of A and D at a control point. Below 2^63 and 2^31.
-    fn at(&self, index: usize) -> [i128; 4] {
+    /// The vector A and the weight D at a control point. Below 2^63 and 2^31.
+    fn at(&self, index: usize) -> ([i128; 3], i128) {
         let weight = self.net.weights.and_then(|w| w.get(index)).map_or(1, |w| w.bits().into());
-        let p = self.net.bits(index);
-        let part = |a: usize| weight * i128::from(2 * p[a] - self.centre[a]);
-        [part(0), part(1), part(2), weight]
+        (zip(self.net.bits(index), self.centre, |p, centre| weight * i128::from(2 * p - centre)), weight)
     }
 
     fn first(&self, along: Along) -> Largest {
-        let mut largest = [0; 4];
-        self.net.first(along, |[a, b]| {
+        let mut largest = ([0; 3], 0);
+        self.net.first(along, &mut |[a, b]| {
             let (a, b) = (self.at(a), self.at(b));
-            largest = core::array::from_fn(|x| a[x].abs_diff(b[x]).max(largest[x]));
+            raise(&mut largest, zip(a.0, b.0, |a, b| a - b), a.1 - b.1);
         });
-        let [x, y, z, d] = largest;
-        Largest { a: length([x, y, z]), d }
+        Largest { a: length(largest.0), d: largest.1 }
     }
 
     fn second(&self, one: Along, two: Along) -> Largest {
-        let mut largest = [0; 4];
-        self.net.second(one, two, |indices| {
+        let mut largest = ([0; 3], 0);
+        self.net.second(one, two, &mut |indices| {
             let [a, b, c, d] = indices.map(|index| self.at(index));
-            largest = core::array::from_fn(|x| (a[x] - b[x] - c[x] + d[x]).unsigned_abs().max(largest[x]));
+            let (outer, inner) = (zip(a.0, d.0, |a, d| a + d), zip(b.0, c.0, |b, c| b + c));
+            raise(&mut largest, zip(outer, inner, |o, i| o - i), a.1 + d.1 - b.1 - c.1);
         });
-        let [x, y, z, d] = largest;
-        Largest { a: length([x, y, z]), d }
+        Largest { a: length(largest.0), d: largest.1 }
     }
 
     /// The bound on the second derivative in two directions, in 2^-16 units.
     ///
     /// First differences of A are below 2^65 as lengths, of D below 2^31; slopes below 2^70; each of the four terms
     /// below 2^107.
+    #[inline(never)]
     fn bound(&self, one: Along, two: Along) -> u128 {
         let (w, second, factor) = (self.least_weight, self.second(one, two), factor(self.net, one, two));
         let (by_one, by_two) = (self.first(one), self.first(two));
@@ -127,9 +127,16 @@ impl<'n, 'a> Homogeneous<'n, 'a> {
     }
 }
 
+/// Raises the components to those of a difference.
+fn raise(largest: &mut ([u128; 3], u128), a: [i128; 3], d: i128) {
+    largest.0 = zip(largest.0, a, |largest, a| a.unsigned_abs().max(largest));
+    largest.1 = largest.1.max(d.unsigned_abs());
+}
+
 /// The length of a vector, rounded up; at most by 2^-60 of it where components have more than 62 bits.
+#[inline(never)]
 fn length(v: [u128; 3]) -> u128 {
     let longest = v.into_iter().max().unwrap_or(0);
     let shift = (128 - longest.leading_zeros()).saturating_sub(62);
-    sqrt_up(v.into_iter().map(|c| c.div_ceil(1 << shift)).map(|c| c * c).sum()) << shift
+    sqrt_up(v.into_iter().map(|c| shift_up(c, shift)).map(|c| c * c).sum()) << shift
 }

@@ -55,20 +55,21 @@ impl<'a> Net<'a> {
         let (mut low, mut high) = ([i64::MAX; 3], [i64::MIN; 3]);
         for p in self.points {
             let p = p.to_array().map(Coord::bits);
-            low = core::array::from_fn(|a| low[a].min(p[a]));
-            high = core::array::from_fn(|a| high[a].max(p[a]));
+            low = zip(low, p, i64::min);
+            high = zip(high, p, i64::max);
         }
         [low, high]
     }
 
     /// The diagonal of the box, in 2^-16 units, rounded up. Below 2^33.
+    #[inline(never)]
     pub(super) fn diagonal(&self) -> u128 {
         let [low, high] = self.extremes();
-        sqrt_up(square(core::array::from_fn(|a| high[a].saturating_sub(low[a]))))
+        sqrt_up(square(zip(high, low, i64::saturating_sub)))
     }
 
     /// Visits the pairs (from, to) of all first differences in a direction.
-    pub(super) fn first(&self, along: Along, mut visit: impl FnMut([usize; 2])) {
+    pub(super) fn first(&self, along: Along, visit: &mut dyn FnMut([usize; 2])) {
         if let Along::Edge(from, to) = along {
             for_triangle(self.degrees.0, 1, |at| visit([at([Some(from), None]), at([Some(to), None])]));
         } else {
@@ -78,7 +79,7 @@ impl<'a> Net<'a> {
     }
 
     /// Visits [a, b, c, d] of all second differences a − b − c + d in two directions.
-    pub(super) fn second(&self, one: Along, two: Along, mut visit: impl FnMut([usize; 4])) {
+    pub(super) fn second(&self, one: Along, two: Along, visit: &mut dyn FnMut([usize; 4])) {
         if let (Along::Edge(from, to), Along::Edge(from2, to2)) = (one, two) {
             for_triangle(self.degrees.0, 2, |at| {
                 let at = |p: usize, q: usize| at([Some(p), Some(q)]);
@@ -109,9 +110,8 @@ impl<'a> Net<'a> {
     /// The largest squared length of the first differences in a direction, in 2^-32. Below 2^68.
     pub(super) fn longest_first(&self, along: Along) -> u128 {
         let mut longest = 0;
-        self.first(along, |[a, b]| {
-            let (a, b) = (self.bits(a), self.bits(b));
-            longest = square(core::array::from_fn(|x| b[x] - a[x])).max(longest);
+        self.first(along, &mut |[a, b]| {
+            longest = square(zip(self.bits(b), self.bits(a), |b, a| b - a)).max(longest);
         });
         longest
     }
@@ -119,9 +119,10 @@ impl<'a> Net<'a> {
     /// The largest squared length of the second differences in two directions, in 2^-32. Below 2^70.
     pub(super) fn longest_second(&self, one: Along, two: Along) -> u128 {
         let mut longest = 0;
-        self.second(one, two, |indices| {
+        self.second(one, two, &mut |indices| {
             let [a, b, c, d] = indices.map(|index| self.bits(index));
-            longest = square(core::array::from_fn(|x| a[x] - b[x] - c[x] + d[x])).max(longest);
+            let (outer, inner) = (zip(a, d, |a, d| a + d), zip(b, c, |b, c| b + c));
+            longest = square(zip(outer, inner, |o, i| o - i)).max(longest);
         });
         longest
     }
@@ -139,6 +140,11 @@ fn for_triangle(degree: usize, missing: usize, mut visit: impl FnMut(&dyn Fn([Op
             });
         }
     }
+}
+
+/// A function of the components of two vectors. No indices, which opt-level "s" would check.
+pub(super) fn zip<A, B, T>([x, y, z]: [A; 3], [p, q, r]: [B; 3], f: impl Fn(A, B) -> T) -> [T; 3] {
+    [f(x, p), f(y, q), f(z, r)]
 }
 
 /// The squared length.
