@@ -319,7 +319,7 @@ fn the_printed_places_reverse_three_of_four_children() {
         // because their area has the other sign.
         let [x, y] = affine(n).map(|axis| printed_places(n, &axis).map(|net| corners(n, &net)));
         let quarter = (n * n) as i128;
-        let areas: Vec<i128> = x.iter().zip(&y).map(|(x, y)| 4 * area(*x, *y) >> (2 * n)).collect();
+        let areas: Vec<i128> = x.iter().zip(&y).map(|(x, y)| (4 * area(*x, *y)) >> (2 * n)).collect();
         assert_eq!(areas, [-quarter, -quarter, -quarter, quarter]);
     }
 }

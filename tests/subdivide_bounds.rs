@@ -405,3 +405,18 @@ proptest! {
         prop_assert!(ours >= largest && ours <= largest * 1.0005 + 0.001, "{ours} {largest}");
     }
 }
+
+/// Lemma 1 is attained by affine nets, its twin by nets of degree 2: no smaller factor would do.
+#[test]
+fn affine_and_quadratic_nets_attain_the_factors() {
+    let affine: Vec<_> =
+        triangle_indices(3).map(|(i, j, _)| Point3::from_ints(7 * i as i16, 9 * j as i16, 1)).collect();
+    let quadratic: Vec<_> = (0..6).map(|i: i16| Point3::from_ints(i * i, 40 - 3 * i, 5 * i % 4)).collect();
+    for quarter in Quarter::ALL {
+        let part = |n: usize, net: &[Point3]| cut(&bits(net), |axis| quarter_triangle(axis, n, quarter));
+        let [whole, child] = [bits(&affine), part(3, &affine)].map(|net| triangle_differences(3, &net)[0]);
+        assert_eq!(child.map(|d| 4 * d), whole.map(|d| d << 6));
+        let [whole, child] = [bits(&quadratic), part(2, &quadratic)].map(|net| triangle_differences(2, &net)[1]);
+        assert_eq!(child.map(|d| 16 * d), whole.map(|d| d << 4));
+    }
+}

@@ -294,7 +294,11 @@ fn both_ends_of_the_legal_range() {
     for shape in shapes.chain(TENSORS.iter().map(|(m, h)| Shape::Tensor(*m, *h))) {
         for pattern in 0..5_usize {
             let sign = |i: usize| {
-                if [true, false, i.is_multiple_of(2), i * i % 3 == 0, i * i % 3 == 0][pattern] { 1 } else { -1 }
+                if [true, false, i.is_multiple_of(2), (i * i).is_multiple_of(3), (i * i).is_multiple_of(3)][pattern] {
+                    1
+                } else {
+                    -1
+                }
             };
             let points: Vec<_> = (0..shape.len()).map(|i| Point3::new(end(sign(i)), end(-sign(i)), end(1))).collect();
             // All weights the largest, or the smallest and the largest.

@@ -62,12 +62,12 @@ impl SurfaceNet<'_> {
     ///   surface point, Σ β (i/m, j/h) is the point of the domain to compare with, and Σ β (i/m)(j/h) is off the
     ///   product of its coordinates.
     ///
-    /// A polynomial patch that passes is within the tolerance at equal parameters. Sufficient, not necessary; a
-    /// patch within tolerance passes after some levels of subdivision, as displacements fall by 4 a level.
+    /// A polynomial patch that passes is within the tolerance at equal parameters. The converse does not hold, but
+    /// displacements fall by 4 a level in the limit.
     ///
     /// Cost per point: 3 multiplications and 6 additions of 64 bits, 3 squares where no component alone decides (twice
     /// that for twisted tensor products), until the first point that fails. 128 bits are used only for tolerances of
-    /// 2^15/n units (triangles) or 2^13/(mh) units and more.
+    /// 2^15/n units (triangles) or 2^13/(mh) units and more. Flash 2.5 KB, stack 0.7 KB on thumbv6m.
     ///
     /// ```
     /// use embedded_surfaces::num::I16F16;
@@ -87,6 +87,17 @@ impl SurfaceNet<'_> {
 impl CurveNet<'_> {
     /// Whether every point of the curve is within the tolerance of its chord, at equal parameters:
     /// max |n·b_i − ((n − i)·b_0 + i·b_n)|² ≤ (n·tolerance)².
+    ///
+    /// ```
+    /// use embedded_surfaces::{num::I16F16, patch::CubicCurve, subdivide::Tolerance};
+    /// let pixel = Tolerance::new(I16F16::ONE)?;
+    /// let bow = CubicCurve::from_ints([[0, 0, 0], [30, 1, 0], [60, 1, 0], [90, 0, 0]])?;
+    /// assert!(bow.net().is_flat(pixel));
+    /// // On its chord, but far from even.
+    /// let uneven = CubicCurve::from_ints([[0, 0, 0], [10, 0, 0], [20, 0, 0], [90, 0, 0]])?;
+    /// assert!(!uneven.net().is_flat(pixel));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn is_flat(&self, tolerance: Tolerance) -> bool {
         flat(&Net::of_curve(self, None), tolerance)
