@@ -33,10 +33,11 @@ pub(crate) const fn shift_up(value: u128, shift: u32) -> u128 {
     whole + (whole << shift < value) as u128
 }
 
-/// `ceil(sqrt(value))`, exact for every value: a bit of the root at a time, in 64 rounds.
+/// `ceil(sqrt(value))`, exact for every value: a round for each bit of the root.
 #[inline(never)]
 pub(crate) const fn sqrt_up(value: u128) -> u128 {
-    let (mut root, mut rest, mut bit) = (0, value, 1 << 126);
+    let even = (127 - (value | 1).leading_zeros()) & !1;
+    let (mut root, mut rest, mut bit) = (0, value, 1 << even);
     while bit != 0 {
         let next = root + bit;
         root >>= 1;

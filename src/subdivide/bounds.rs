@@ -159,11 +159,13 @@ impl SurfaceNet<'_> {
     ///   M_ss = h(h−1)·|Δ²_ss| (Filip, Magedson, Markot 1986).
     /// * Rational: the same form with bounds on the second derivatives of the quotient from the homogeneous net, the
     ///   centre of its box as origin; of a triangle, the least over its corners. Grows like the square of the ratio
-    ///   of the weights: conservative, where [`is_flat`](Self::is_flat) does not suffer.
+    ///   of the weights: conservative (an octant of the sphere of 100 units gets 7 levels for a tolerance of 1 where 4
+    ///   are enough), where [`is_flat`](Self::is_flat) does not suffer.
     ///
     /// At most the diagonal of the net's box. Cost: a pass over the net for each of three second differences, three
-    /// square roots of 64 rounds; rational nets twice that in 128-bit products, triangles three times more. Stack 1.4 KB
-    /// on thumbv6m.
+    /// square roots; rational nets twice that in 128-bit products, triangles three times more. Counted on thumbv7em:
+    /// 9500 instructions for a bicubic patch, 8900 for a cubic triangle, 81 000 for a rational bicubic. Stack 1.4 KB on
+    /// thumbv6m.
     ///
     /// ```
     /// use embedded_surfaces::patch::{QuadraticTriangle, Surface};
@@ -201,7 +203,8 @@ impl SurfaceNet<'_> {
 
     /// Levels of halving along r and along s that suffice for the tolerance, with the fewest triangles that the bound
     /// allows: the least m_r + m_s with M_rr/4^m_r + 2 M_rs/2^(m_r+m_s) + M_ss/4^m_s ≤ 8·tolerance, then the most even.
-    /// A triangle gets [`depth_for`](Self::depth_for) twice.
+    /// A triangle gets [`depth_for`](Self::depth_for) twice. Cost: that of `depth_for` and up to 50 comparisons of
+    /// 128-bit sums, 19 000 instructions for a bicubic patch on thumbv7em.
     ///
     /// # Errors
     /// [`SubdivideError::TooDeep`] where `depth_for` has it.
@@ -216,11 +219,12 @@ impl SurfaceNet<'_> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn depths_for(&self, tolerance: Tolerance) -> Result<[u32; 2], SubdivideError> {
-        let uniform = self.depth_for(tolerance)?;
         if self.is_triangle() {
-            return Ok([uniform; 2]);
+            return self.depth_for(tolerance).map(|m| [m; 2]);
         }
-        let Curvature { rr, rs, ss } = Curvature::of(&Net::of(self), [Along::R, Along::S]);
+        let curvature = Curvature::of(&Net::of(self), [Along::R, Along::S]);
+        let uniform = depth(curvature.spread(), tolerance)?;
+        let Curvature { rr, rs, ss } = curvature;
         // The uniform depth is legal, so that rr + 2 rs + ss ≤ 2^(34 + 32): shifts by up to 64 stay within 128 bits.
         let allowed = u128::from(tolerance.bits().unsigned_abs()) << 3;
         let fits = |r: u32, s: u32| {
@@ -244,8 +248,9 @@ impl SurfaceNet<'_> {
 /// The levels of subdivision that the paper's rule asks for: the least m with M / 2^m ≤ tolerance, M the largest of
 /// these first differences.
 ///
-/// For comparison: edges that short keep the net within the tolerance, but the distance falls by 4 a level, not by 2,
-/// so that [`SurfaceNet::depth_for`] gets by with about half the levels. Not limited by [`MAX_DEPTH`].
+/// For comparison: it asks for edges of the net as short as the tolerance. They halve, while the distance to the surface
+/// falls by 4 a level, so that [`SurfaceNet::depth_for`] gets by with about half the levels. Not limited by
+/// [`MAX_DEPTH`].
 ///
 /// ```
 /// use embedded_surfaces::num::I16F16;

@@ -67,7 +67,9 @@ impl SurfaceNet<'_> {
     ///
     /// Cost per point: 3 multiplications and 6 additions of 64 bits, 3 squares where no component alone decides (twice
     /// that for twisted tensor products), until the first point that fails. 128 bits are used only for tolerances of
-    /// 2^15/n units (triangles) or 2^13/(mh) units and more. Flash 2.5 KB, stack 0.7 KB on thumbv6m.
+    /// 2^15/n units (triangles) or 2^13/(mh) units and more. Counted on thumbv7em:
+    /// 550 instructions where the second point fails, 1900 for a flat cubic triangle, 4300 for a flat bicubic patch.
+    /// Flash 2.5 KB, stack 0.7 KB on thumbv6m.
     ///
     /// ```
     /// use embedded_surfaces::num::I16F16;
