@@ -171,8 +171,8 @@ impl Tree<'_, '_> {
     /// Cuts the current piece from the one above it; whether there is one.
     fn enter(&mut self) -> bool {
         let Some(level) = self.depth.checked_sub(1) else { return false };
-        let Some(Step { split, part, samplings }) = self.path.get(level).copied() else { return false };
-        let (Some(cut), Some(sampling)) = (split.part(part), samplings.get(part)) else { return false };
+        let Some(Step { split, part, samplings }) = self.path.get(level) else { return false };
+        let (Some(cut), Some(sampling)) = (split.part(*part), samplings.get(*part)) else { return false };
         self.sampling = *sampling;
         self.depth = level;
         let (parent, slot, weight_slot) = self.current();

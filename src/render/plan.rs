@@ -3,11 +3,11 @@
 use super::pen::Pen;
 use super::pieces::DEPTH;
 use crate::forward::{
-    Accumulator, Budget, Form, Kernel, LatticeError, QuotientWalker, Residual, Sampling, Visit, Walker, deepest_budget,
-    piece_budget, piece_sampling, piece_turn, tangent_bits,
+    Accumulator, Budget, Form, Kernel, LatticeError, PieceBudget, QuotientWalker, Residual, Sampling, Visit, Walker,
+    deepest_budget, piece_budget, piece_sampling, piece_turn, tangent_bits,
 };
 use crate::geometry::Point3;
-use crate::num::{Coord, I16F16, Word};
+use crate::num::Word;
 use crate::patch::SurfaceNet;
 use crate::subdivide::part_net;
 
@@ -94,8 +94,8 @@ fn run_quotient<W: Word, V: Visit, const R: usize>(plan: &Plan<'_>, visitor: V) 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PiecePlan {
     sampling: Sampling,
-    corners: (Budget, Width),
-    centres: Option<(Budget, Width)>,
+    corners: (PieceBudget, Width),
+    centres: Option<(PieceBudget, Width)>,
 }
 
 impl PiecePlan {
@@ -125,37 +125,35 @@ impl PiecePlan {
 
     /// Whether everything fits 64 bits.
     fn is_short(&self) -> bool {
-        let short = |(_, width): (Budget, Width)| width != Width::Full128;
+        let short = |(_, width): (PieceBudget, Width)| width != Width::Full128;
         short(self.corners) && self.centres.is_none_or(short)
     }
 
-    /// Calls `f` for each lattice of the piece; `room` holds as many points as the net.
-    pub(super) fn each_lattice(&self, net: SurfaceNet<'_>, room: &mut [Point3], mut f: impl FnMut(Plan<'_>)) {
+    /// Calls `f` for each lattice of the piece, and with how often its z is halved; `room` holds as many points as the net.
+    pub(super) fn each_lattice(&self, net: SurfaceNet<'_>, room: &mut [Point3], mut f: impl FnMut(Plan<'_>, u32)) {
         let turn = piece_turn(&net, self.sampling);
         let (r, s) = (self.sampling.steps.r(), self.sampling.steps.s());
         let steps = if turn == 1 { (s, r) } else { (r, s) };
         for (lattice, centred) in [(Some(self.corners), false), (self.centres, true)] {
-            let Some((budget, width)) = lattice else { continue };
-            let rounded = round_net(net, budget.fraction_bits, room);
+            let Some((PieceBudget { budget, halvings }, width)) = lattice else { continue };
+            let rounded = round_net(net, (budget.fraction_bits, halvings), room);
             let form = Form::surface(rounded, (1, 1)).turned(turn, steps);
-            f(Plan { form: if centred { form.centres() } else { form }, budget, width });
+            f(Plan { form: if centred { form.centres() } else { form }, budget, width }, halvings);
         }
     }
 }
 
-/// The net with coordinates rounded half up to so many fraction bits: within 2^-(bits + 1), on the same curves from both
-/// sides of a seam where both keep as many.
-fn round_net<'a>(net: SurfaceNet<'a>, bits: u32, room: &'a mut [Point3]) -> SurfaceNet<'a> {
+/// The net with coordinates rounded half up to so many fraction bits, within 2^-(bits + 1), and z halved first.
+fn round_net<'a>(net: SurfaceNet<'a>, (bits, halvings): (u32, u32), room: &'a mut [Point3]) -> SurfaceNet<'a> {
     let (points, drop) = (net.points(), 16_u32.saturating_sub(bits));
-    if net.weights().is_some() || drop == 0 || room.len() < points.len() {
+    if net.weights().is_some() || drop + halvings == 0 || room.len() < points.len() {
         return net;
     }
+    let half = (1 << drop) >> 1;
     for (to, from) in room.iter_mut().zip(points) {
-        let round = |c: I16F16| {
-            let bits = (c.bits() + (1 << drop >> 1)) >> drop << drop;
-            I16F16::from_bits(bits as i32)
-        };
-        *to = Point3::from_array(from.to_array().map(round));
+        let round = |c: i32| (c + half) >> drop << drop;
+        let z = (from.z.to_bits() >> halvings) + half;
+        *to = Point3::from_bits(round(from.x.to_bits()), round(from.y.to_bits()), z >> drop << drop);
     }
     part_net(net, room, &[])
 }
@@ -166,14 +164,14 @@ pub(super) fn fits(net: SurfaceNet<'_>, sampling: Sampling) -> bool {
 }
 
 /// The budget of a lattice of a piece and the walker that suits it.
-fn lattice(net: SurfaceNet<'_>, form: &Form<'_>) -> Result<(Budget, Width), LatticeError> {
+fn lattice(net: SurfaceNet<'_>, form: &Form<'_>) -> Result<(PieceBudget, Width), LatticeError> {
     if form.weights().is_some() {
         // Tangents, where they are wanted, were checked with the scene.
         let plan = Plan::of(*form, true).or_else(|_| Plan::of(*form, false))?;
-        return Ok((plan.budget, plan.width));
+        return Ok((PieceBudget { budget: plan.budget, halvings: 0 }, plan.width));
     }
     let budget = piece_budget(net, form)?;
-    let width = match (budget.accumulator, form.degree()) {
+    let width = match (budget.budget.accumulator, form.degree()) {
         (Accumulator::I32, _) => Width::Cubic32,
         (Accumulator::I64, ..4) => Width::Cubic64,
         (Accumulator::I64, ..6) => Width::Quintic64,

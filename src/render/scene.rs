@@ -208,9 +208,8 @@ impl<P: Paint> Pieces for Filling<'_, '_, '_, P> {
         self.statistics.pieces += 1;
         let (area, colour, depth) = self.tile.parts();
         let band = (area.y, area.y.saturating_add_unsigned(area.height));
-        let window = self.shading.window;
-        plan.each_lattice(piece, room, |plan| {
-            let form = &plan.form;
+        plan.each_lattice(piece, room, |plan, halvings| {
+            let (form, window) = (&plan.form, self.shading.window.halved(halvings));
             let canvas = Canvas { paint: self.paint, patch: self.patch, colour };
             let tangents = Tangents::new(piece, form);
             plan.draw(Pen {

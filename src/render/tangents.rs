@@ -51,13 +51,6 @@ impl Weights {
     fn of(degree: usize, t: u32) -> Self {
         let rest = (1 << FRACTION) - t;
         let mut weights = Self { here: [0; ORDER], below: [0; ORDER] };
-        if degree == 3 {
-            let (tt, ss, ts) = (times(t, t), times(rest, rest), times(t, rest));
-            let (tts, sst) = (times(ts, t), times(ts, rest));
-            weights.below[..3].copy_from_slice(&[ss, 2 * ts, tt]);
-            weights.here[..4].copy_from_slice(&[ss - sst, 3 * sst, 3 * tts, tt - tts]);
-            return weights;
-        }
         weights.here[0] = 1 << FRACTION;
         for d in 1..=degree.min(MAX_DEGREE) {
             weights.below = weights.here;
@@ -69,6 +62,21 @@ impl Weights {
         }
         weights
     }
+}
+
+/// The Bernstein weights of degrees 2 and 3.
+#[inline(always)]
+fn cubic(t: u32) -> ([i32; 3], [i32; 4]) {
+    let rest = (1 << FRACTION) - t;
+    let (tt, ss, ts) = (times(t, t), times(rest, rest), times(t, rest));
+    let (tts, sst) = (times(ts, t), times(ts, rest));
+    ([ss, 2 * ts, tt].map(|w| w as i32), [ss - sst, 3 * sst, 3 * tts, tt - tts].map(|w| w as i32))
+}
+
+/// The product of two 32-bit numbers.
+#[inline(always)]
+fn product(a: i32, b: i32) -> i64 {
+    i64::from(a) * i64::from(b)
 }
 
 /// Σ weight·(to − from)/2 along the three axes; halves of differences fit 32 bits.
@@ -127,6 +135,18 @@ impl<'a> Tangents<'a> {
             self.row = Some(j);
             self.collapse(s);
         }
+        if self.degrees == (3, 3) {
+            let (below, here) = cubic(r);
+            let ([a, b, c, ..], [d, e, f, g, ..]) = (&self.by_r, &self.by_s);
+            let mut out = [[0; 3]; 2];
+            for axis in 0..3 {
+                let along = product(below[0], a[axis]) + product(below[1], b[axis]) + product(below[2], c[axis]);
+                let across = product(here[0], d[axis]) + product(here[1], e[axis]);
+                let across = across + product(here[2], f[axis]) + product(here[3], g[axis]);
+                (out[0][axis], out[1][axis]) = ((along >> FRACTION) as i32, (across >> FRACTION) as i32);
+            }
+            return out;
+        }
         let m = self.degrees.0.min(MAX_DEGREE);
         let weights = Weights::of(m, r);
         [dot(&weights.below[..m], &self.by_r), dot(&weights.here[..m + 1], &self.by_s)]
@@ -136,6 +156,9 @@ impl<'a> Tangents<'a> {
     #[inline(never)]
     fn collapse(&mut self, s: u32) {
         let (m, h) = self.degrees;
+        if let Some(points) = self.net.points().first_chunk::<16>().filter(|_| (m, h) == (3, 3)) {
+            return self.collapse_bicubic(points, s);
+        }
         let weights = Weights::of(h, s);
         let (mut along, mut across) = ([[0_i64; 3]; ORDER], [[0_i64; 3]; ORDER]);
         for (a, (along, across)) in along.iter_mut().zip(&mut across).enumerate().take(m + 1) {
@@ -159,6 +182,33 @@ impl<'a> Tangents<'a> {
         let (m, n) = (m.min(ORDER), (m + 1).min(ORDER));
         shorten(&along[..m], &mut self.by_r);
         shorten(&across[..n], &mut self.by_s);
+    }
+}
+
+impl Tangents<'_> {
+    /// [`collapse`](Self::collapse) for a bicubic.
+    fn collapse_bicubic(&mut self, points: &[Point3; 16], s: u32) {
+        let (below, here) = cubic(s);
+        let (mut along, mut across) = ([[0_i64; 3]; 3], [[0_i64; 3]; 4]);
+        let mut before = [0_i64; 3];
+        for a in 0..4 {
+            let mut row = [[0; 4]; 3];
+            for b in 0..4 {
+                let p = &points[(a * self.strides.0 + b * self.strides.1) & 15];
+                (row[0][b], row[1][b], row[2][b]) = (p.x.to_bits() >> 1, p.y.to_bits() >> 1, p.z.to_bits() >> 1);
+            }
+            for axis in 0..3 {
+                let [p, q, r, s] = row[axis];
+                let value = product(here[0], p) + product(here[1], q) + product(here[2], r) + product(here[3], s);
+                across[a][axis] = product(below[0], q - p) + product(below[1], r - q) + product(below[2], s - r);
+                if a > 0 {
+                    along[a - 1][axis] = value - before[axis];
+                }
+                before[axis] = value;
+            }
+        }
+        shorten(&along, &mut self.by_r);
+        shorten(&across, &mut self.by_s);
     }
 }
 
@@ -220,7 +270,11 @@ fn triangle(points: &[Point3], degree: usize, [u, v, w]: [u32; 3]) -> [[i32; 3];
 /// curves of the degrees n − b through the control points of row b.
 pub(super) fn row_range(form: &Form<'_>, j: u32) -> (i64, i64) {
     let (m, h) = form.degrees;
-    let weights = Weights::of(h, Grid::of(form.steps.1, form.centred).at(j)).here;
+    let s = Grid::of(form.steps.1, form.centred).at(j);
+    if let Some(points) = form.points().first_chunk::<16>().filter(|_| (m, h) == (3, 3)) {
+        return bicubic_range(points, form.turn(), s);
+    }
+    let weights = Weights::of(h, s).here;
     if form.kind == Kind::Triangle {
         let (mut low, mut high) = (0, 0);
         for (b, weight) in weights.iter().enumerate().take(h + 1) {
@@ -241,4 +295,18 @@ pub(super) fn row_range(form: &Form<'_>, j: u32) -> (i64, i64) {
         range = (range.0.min(value), range.1.max(value));
     }
     (range.0 >> FRACTION, range.1 >> FRACTION)
+}
+
+/// [`row_range`] for a bicubic.
+fn bicubic_range(points: &[Point3; 16], turn: u8, s: u32) -> (i64, i64) {
+    let (_, here) = cubic(s);
+    let (along, across) = if turn == 0 { (4, 1) } else { (1, 4) };
+    let mut range = (i32::MAX, i32::MIN);
+    for a in 0..4 {
+        let y = |b: usize| points[(a * along + b * across) & 15].y.to_bits();
+        let value = product(here[0], y(0)) + product(here[1], y(1)) + product(here[2], y(2)) + product(here[3], y(3));
+        let value = (value >> FRACTION) as i32;
+        range = (range.0.min(value), range.1.max(value));
+    }
+    (range.0.into(), range.1.into())
 }
