@@ -1,4 +1,5 @@
-//! What adaptive drawing costs: points, pieces and splits, counted and committed.
+//! What adaptive drawing costs: points, pieces and splits, counted. The counts are budgets: a change that costs more
+//! must raise them and say why.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::disallowed_types, clippy::float_arithmetic)]
 
 #[path = "common/scene.rs"]
@@ -19,46 +20,76 @@ fn draw<S: Surface>(patches: &[S], area: Area, rows: u32) -> Statistics {
     frame.statistics()
 }
 
-fn report<S: Surface>(name: &str, patches: &[S], area: Area) {
+/// Points, pieces and splits in bands of so many rows, and points a pixel (distinct pixels per patch, summed); nothing is
+/// missed.
+fn cost<S: Surface>(patches: &[S], area: Area, rows: u32) -> ([u64; 3], f64) {
     let audit = Audit::of(patches, area).unwrap();
-    for rows in [area.height, 32, 16, 8] {
-        let s = draw(patches, area, rows);
-        println!(
-            "{name} rows {rows}: {s:?}, {} pixels, {:.3} a pixel, missed {}",
-            audit.pixels,
-            s.points as f64 / audit.pixels as f64,
-            audit.missed.len()
-        );
-    }
+    assert_eq!(audit.missed, []);
+    let s = draw(patches, area, rows);
+    ([s.points, s.pieces.into(), s.splits.into()], s.points as f64 / audit.pixels as f64)
+}
+
+fn screen(width: u32, height: u32) -> Area {
+    Area { x: 0, y: 0, width, height }
 }
 
 #[test]
-fn points_per_pixel() {
-    let screen = |width, height| Area { x: 0, y: 0, width, height };
-    report("teapot 320", &Look::at(VIEWS[1], (320, 240)).see(&teapot()), screen(320, 240));
-    report("teapot 640", &Look::at(VIEWS[1], (640, 480)).see(&teapot()), screen(640, 480));
-    report("tea cup", &Look::at((-10.0, 30.0), (320, 240)).see(&teacup()), screen(320, 240));
+fn the_teapot() {
+    let small = Look::at(VIEWS[1], (320, 240)).see(&teapot());
+    let (counts, per_pixel) = cost(&small, screen(320, 240), 240);
+    assert_eq!(counts, [152_042, 770, 738]);
+    assert!(per_pixel <= 2.4, "{per_pixel}");
+    let (counts, per_pixel) = cost(&small, screen(320, 240), 16);
+    assert_eq!(counts, [186_393, 1410, 2011]);
+    assert!(per_pixel <= 3.1, "{per_pixel}");
+    let large = Look::at(VIEWS[1], (640, 480)).see(&teapot());
+    let (counts, per_pixel) = cost(&large, screen(640, 480), 480);
+    assert_eq!(counts, [513_193, 2501, 2469]);
+    assert!(per_pixel <= 2.0, "{per_pixel}");
+}
+
+#[test]
+fn the_tea_cup() {
+    let patches = Look::at((-10.0, 30.0), (320, 240)).see(&teacup());
+    let (counts, per_pixel) = cost(&patches, screen(320, 240), 240);
+    assert_eq!(counts, [193_427, 937, 911]);
+    assert!(per_pixel <= 2.7, "{per_pixel}");
+}
+
+/// The area of the random patches: 200 pixels a side, and what they are moved by.
+const ROOM: Area = Area { x: -60, y: -60, width: 340, height: 340 };
+
+#[test]
+fn random_bicubics() {
     let mut random = Random(24);
     let patches: Vec<_> = (0..24)
         .map(|_| {
             let net: [[Point3; 4]; 4] = core::array::from_fn(|i| {
-                core::array::from_fn(|j| random.near(i as f64 / 3.0, j as f64 / 3.0, 200.0, 0.25))
+                core::array::from_fn(|j| random.near(i as f64 / 3.0, j as f64 / 3.0, 200.0, 0.5))
             });
             BicubicPatch::new(net).unwrap()
         })
         .collect();
-    let area = Area { x: -60, y: -60, width: 340, height: 340 };
-    report("random bicubic", &patches, area);
+    let (counts, per_pixel) = cost(&patches, ROOM, ROOM.height);
+    assert_eq!(counts, [1_351_506, 5694, 5670]);
+    assert!(per_pixel <= 1.7, "{per_pixel}");
+}
+
+#[test]
+fn random_cubic_triangles() {
+    let mut random = Random(25);
     let patches: Vec<_> = (0..24)
         .map(|_| {
             let mut net = Vec::new();
             for i in (0..=3).rev() {
                 for j in (0..=3 - i).rev() {
-                    net.push(random.near(i as f64 / 3.0, j as f64 / 3.0, 200.0, 0.25));
+                    net.push(random.near(f64::from(i) / 3.0, f64::from(j) / 3.0, 200.0, 0.5));
                 }
             }
             CubicTriangle::new(net.try_into().unwrap()).unwrap()
         })
         .collect();
-    report("random cubic triangles", &patches, area);
+    let (counts, per_pixel) = cost(&patches, ROOM, ROOM.height);
+    assert_eq!(counts, [953_926, 1098, 358]);
+    assert!(per_pixel <= 1.7, "{per_pixel}");
 }

@@ -93,26 +93,64 @@ fn more_than(bound: u32) -> u32 {
     (bound >> SHORT) + 1
 }
 
-/// The cheapest hole-free sampling of a piece, with the slack that seams between pieces need; `centres`: those of cells
-/// may be used.
-pub(crate) fn piece_sampling(net: SurfaceNet<'_>, centres: bool) -> Sampling {
-    if net.weights().is_some() {
-        let plain = || Sampling { steps: Steps::hole_free(net), centres };
-        let Sampling { steps, centres } = if centres { Sampling::cheapest(net) } else { plain() };
-        let more = |n: u32| (with_slack(n) + 1).min(MAX_STEPS + 1);
-        return Sampling { steps: Steps { r: more(steps.r), s: more(steps.s) }, centres };
+/// The bounds on the slopes of a piece in x and y.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PieceSlopes {
+    x: Slopes,
+    y: Slopes,
+}
+
+impl PieceSlopes {
+    pub(crate) fn of(net: SurfaceNet<'_>) -> Self {
+        Self { x: slopes(&net, 0), y: slopes(&net, 1) }
     }
-    let [x, y] = [slopes(&net, 0), slopes(&net, 1)];
-    let [a, b, c] = core::array::from_fn(|d| x[d].max(y[d]));
-    if net.is_triangle() {
-        // The centres of cells make up for the longest family of edges.
-        let longest = a.max(b).max(c);
-        let others = a.max(b).min(b.max(c)).min(a.max(c));
-        let (coarse, fine) = (count(others), count(longest));
-        return cheaper(net, Steps { r: fine, s: fine }, centres.then_some(Steps { r: coarse, s: coarse }));
+
+    /// The larger of x and y, for each family of net edges.
+    fn largest(&self) -> Slopes {
+        core::array::from_fn(|d| self.x[d].max(self.y[d]))
     }
-    let coarse = Steps { r: count(a), s: count(b) };
-    cheaper(net, tensor_steps(net.points(), net.degrees(), a, b), centres.then_some(coarse))
+
+    /// No hole-free lattice of a polynomial tensor-product piece has fewer points.
+    pub(crate) fn least_points(&self) -> u64 {
+        let [a, b, _] = self.largest();
+        u64::from(count(a) + 1) * u64::from(count(b) + 1)
+    }
+
+    /// The cheapest hole-free sampling of the piece, with the slack that seams between pieces need; `centres`: those of
+    /// cells may be used.
+    pub(crate) fn sampling(&self, net: SurfaceNet<'_>, centres: bool) -> Sampling {
+        if net.weights().is_some() {
+            let plain = || Sampling { steps: Steps::hole_free(net), centres };
+            let Sampling { steps, centres } = if centres { Sampling::cheapest(net) } else { plain() };
+            let more = |n: u32| (with_slack(n) + 1).min(MAX_STEPS + 1);
+            return Sampling { steps: Steps { r: more(steps.r), s: more(steps.s) }, centres };
+        }
+        let [a, b, c] = self.largest();
+        if net.is_triangle() {
+            // The centres of cells make up for the longest family of edges.
+            let longest = a.max(b).max(c);
+            let others = a.max(b).min(b.max(c)).min(a.max(c));
+            let (coarse, fine) = (count(others), count(longest));
+            return cheaper(net, Steps { r: fine, s: fine }, centres.then_some(Steps { r: coarse, s: coarse }));
+        }
+        let coarse = Steps { r: count(a), s: count(b) };
+        cheaper(net, tensor_steps(net.points(), net.degrees(), a, b), centres.then_some(coarse))
+    }
+
+    /// The turn of a lattice whose rows change y the least: then bands leave out the most of them. A triangle with centres
+    /// is turned so that they lie on its longest family of edges.
+    pub(crate) fn turn(&self, triangle: bool, centres: bool) -> u8 {
+        let y = self.y;
+        if !triangle {
+            return (y[1] < y[0]).into();
+        }
+        // Turned by 0, 1, 2, rows run along families 0, 1, 2, and cells are halved along families 2, 0, 1.
+        if centres {
+            let [a, b, c] = self.largest();
+            return if c >= a.max(b) { 0 } else { 1 + u8::from(b > a) };
+        }
+        if y[2] < y[0].min(y[1]) { 2 } else { (y[1] < y[0]).into() }
+    }
 }
 
 fn cheaper(net: SurfaceNet<'_>, plain: Steps, coarse: Option<Steps>) -> Sampling {
@@ -255,21 +293,6 @@ impl Ratio {
     fn times(self, factor: u32) -> Option<u32> {
         (self.numerator * factor).checked_div(self.denominator).map(|ratio| ratio + 1).filter(|ratio| *ratio < 1 << 16)
     }
-}
-
-/// The turn of a piece's lattice whose rows change y the least: then bands leave out the most of them. A triangle with
-/// centres is turned so that they lie on its longest family of edges.
-pub(crate) fn piece_turn(net: &SurfaceNet<'_>, sampling: Sampling) -> u8 {
-    let [x, y] = [slopes(net, 0), slopes(net, 1)];
-    if !net.is_triangle() {
-        return (y[1] < y[0]).into();
-    }
-    // Turned by 0, 1, 2, rows run along families 0, 1, 2, and cells are halved along families 2, 0, 1.
-    if sampling.centres {
-        let [a, b, c] = core::array::from_fn(|d| x[d].max(y[d]));
-        return if c >= a.max(b) { 0 } else { 1 + u8::from(b > a) };
-    }
-    if y[2] < y[0].min(y[1]) { 2 } else { (y[1] < y[0]).into() }
 }
 
 /// K: the longest step of any coordinate in whole units, rounded up, at least 1. Steps of x and y are below 1.

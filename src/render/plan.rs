@@ -3,8 +3,8 @@
 use super::pen::Pen;
 use super::pieces::DEPTH;
 use crate::forward::{
-    Accumulator, Budget, Form, Kernel, LatticeError, PieceBudget, QuotientWalker, Residual, Sampling, Visit, Walker,
-    deepest_budget, piece_budget, piece_sampling, piece_turn, tangent_bits,
+    Accumulator, Budget, Form, Kernel, LatticeError, PieceBudget, PieceSlopes, QuotientWalker, Residual, Sampling,
+    Visit, Walker, deepest_budget, piece_budget, tangent_bits,
 };
 use crate::geometry::Point3;
 use crate::num::Word;
@@ -110,7 +110,7 @@ impl PiecePlan {
             if plan.is_ok_and(|plan| plan.centres.is_some_and(|(_, width)| width != Width::Full128)) {
                 return plan;
             }
-            sampling = piece_sampling(net, false);
+            sampling = PieceSlopes::of(net).sampling(net, false);
         }
         Self::at(net, sampling)
     }
@@ -131,7 +131,7 @@ impl PiecePlan {
 
     /// Calls `f` for each lattice of the piece, and with how often its z is halved; `room` holds as many points as the net.
     pub(super) fn each_lattice(&self, net: SurfaceNet<'_>, room: &mut [Point3], mut f: impl FnMut(Plan<'_>, u32)) {
-        let turn = piece_turn(&net, self.sampling);
+        let turn = PieceSlopes::of(net).turn(net.is_triangle(), self.sampling.centres);
         let (r, s) = (self.sampling.steps.r(), self.sampling.steps.s());
         let steps = if turn == 1 { (s, r) } else { (r, s) };
         for (lattice, centred) in [(Some(self.corners), false), (self.centres, true)] {
@@ -186,7 +186,7 @@ fn lattice(net: SurfaceNet<'_>, form: &Form<'_>) -> Result<(PieceBudget, Width),
 /// # Errors
 /// What the lattice of the patch (rational: undivided; polynomial: split as deep as it goes) does not fit.
 pub(super) fn check_pieces(net: SurfaceNet<'_>, normals: bool) -> Result<(), LatticeError> {
-    let sampling = piece_sampling(net, false);
+    let sampling = PieceSlopes::of(net).sampling(net, false);
     if net.weights().is_some() {
         return Plan::of(Form::surface(net, (sampling.steps.r(), sampling.steps.s())), normals).map(drop);
     }
