@@ -145,27 +145,45 @@ pub(crate) struct QuotientWalker<W, const R: usize> {
 impl<W: Word, const R: usize> QuotientWalker<W, R> {
     /// The walk over a form with weights, whose degrees are below `R`.
     pub(crate) fn new(form: &Form<'_>, budget: &Budget) -> Self {
+        let mut walker = Self::blank();
+        walker.set_up(form, budget);
+        walker
+    }
+
+    /// No walk yet: for [`set_up`](Self::set_up) in place, which spares the stack a copy.
+    #[inline(always)]
+    pub(crate) fn blank() -> Self {
+        let zero = [W::ZERO; R];
+        Self {
+            x: [0; 3],
+            t: [[zero; R]; 3],
+            d: [zero; R],
+            row: Row { x: [0; 3], t: [zero; 3], d: zero, across_t: [zero; 3], across_d: zero },
+            weights: Weights::of((0, 0)),
+            ladder: 0,
+            position: (0, 0),
+            last_in_row: 0,
+            last_row: 0,
+            shrinks: false,
+        }
+    }
+
+    /// Starts the walk over a form with weights, whose degrees are below `R`.
+    #[inline(never)]
+    pub(crate) fn set_up(&mut self, form: &Form<'_>, budget: &Budget) {
         let (drop, fraction_bits) = (16 - budget.fraction_bits, budget.fraction_bits);
         let weight = |a, b| form.weight_bits(a, b) >> budget.weight_shift;
-        let d: Table<W, R> = difference_table(form, &|a, b| weight(a, b) << fraction_bits);
-        let zero = [W::ZERO; R];
-        let mut walker = Self {
-            x: [0; 3],
-            t: core::array::from_fn(|axis| {
-                difference_table(form, &|a, b| weight(a, b) * (form.bits(axis, a, b) >> drop))
-            }),
-            d,
-            row: Row { x: [0; 3], t: [zero; 3], d: zero, across_t: [zero; 3], across_d: zero },
-            weights: Weights::of(form.degrees),
-            ladder: budget.largest_step.checked_ilog2().unwrap_or(0),
-            position: (0, 0),
-            last_in_row: form.last_in_row(0),
-            last_row: form.last_row(),
-            shrinks: form.kind == Kind::Triangle,
-        };
-        walker.place(form);
-        walker.start_row::<true>();
-        walker
+        difference_table(&mut self.d, form, &|a, b| weight(a, b) << fraction_bits);
+        for (axis, t) in self.t.iter_mut().enumerate() {
+            difference_table(t, form, &|a, b| weight(a, b) * (form.bits(axis, a, b) >> drop));
+        }
+        self.weights = Weights::of(form.degrees);
+        self.ladder = budget.largest_step.checked_ilog2().unwrap_or(0);
+        self.last_in_row = form.last_in_row(0);
+        self.last_row = form.last_row();
+        self.shrinks = form.kind == Kind::Triangle;
+        self.place(form);
+        self.start_row::<true>();
     }
 
     /// Turns the tables of A into those of T at the first point.
@@ -225,16 +243,16 @@ impl<W: Word, const R: usize> QuotientWalker<W, R> {
 
     /// Visits what is left of the lattice.
     #[inline]
-    pub(crate) fn visit<V: Visit>(mut self, mut visitor: V) -> V {
+    pub(crate) fn visit<V: Visit>(&mut self, mut visitor: V) -> V {
         if self.position.1 > self.last_row {
             return visitor;
         }
         loop {
             let (mut i, j) = self.position;
-            let mut row = self.row;
+            let row = &mut self.row;
             let wanted = visitor.wants_row(j);
             while wanted {
-                visitor = visitor.point(&At { i, j, row: &row, weights: &self.weights });
+                visitor = visitor.point(&At { i, j, row, weights: &self.weights });
                 if i == self.last_in_row {
                     break;
                 }

@@ -77,23 +77,41 @@ pub(crate) struct Walker<K: Kernel, const R: usize> {
 impl<K: Kernel, const R: usize> Walker<K, R> {
     /// The walk over `form`, whose degrees are below `R`.
     pub(crate) fn new(kernel: K, form: &Form<'_>, budget: &Budget) -> Self {
+        let mut walker = Self::blank(kernel);
+        walker.set_up(form, budget);
+        walker
+    }
+
+    /// No walk yet: for [`set_up`](Self::set_up) in place, which spares the stack a copy.
+    #[inline(always)]
+    pub(crate) fn blank(kernel: K) -> Self {
         let zero = K::Word::ZERO;
-        let drop = 16 - budget.fraction_bits;
-        let table = |axis| difference_table(form, &|a, b| form.bits(axis, a, b) >> drop);
-        let mut walker = Self {
+        Self {
             kernel,
-            table: core::array::from_fn(table),
+            table: [[[zero; R]; R]; 3],
             start: ([0; 3], [zero; 3]),
             row: Row { x: [0; 3], e: [zero; 3], d: [[zero; R]; 3], v: [[zero; R]; 3] },
-            weights: Weights::of(form.degrees),
+            weights: Weights::of((0, 0)),
             position: (0, 0),
-            last_in_row: form.last_in_row(0),
-            last_row: form.last_row(),
-            shrinks: form.kind == Kind::Triangle,
-        };
-        walker.place(form, budget);
-        walker.start_row::<true>();
-        walker
+            last_in_row: 0,
+            last_row: 0,
+            shrinks: false,
+        }
+    }
+
+    /// Starts the walk over `form`, whose degrees are below `R`.
+    #[inline(never)]
+    pub(crate) fn set_up(&mut self, form: &Form<'_>, budget: &Budget) {
+        let drop = 16 - budget.fraction_bits;
+        for (axis, table) in self.table.iter_mut().enumerate() {
+            difference_table(table, form, &|a, b| form.bits(axis, a, b) >> drop);
+        }
+        self.weights = Weights::of(form.degrees);
+        self.last_in_row = form.last_in_row(0);
+        self.last_row = form.last_row();
+        self.shrinks = form.kind == Kind::Triangle;
+        self.place(form, budget);
+        self.start_row::<true>();
     }
 
     /// Sets x and e at the first point.
@@ -150,8 +168,8 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
     }
 
     /// Visits what is left of the lattice.
-    #[inline]
-    pub(crate) fn visit<V: Visit>(mut self, mut visitor: V) -> V {
+    #[inline(always)]
+    pub(crate) fn visit<V: Visit>(&mut self, mut visitor: V) -> V {
         if self.position.1 > self.last_row {
             return visitor;
         }
@@ -199,7 +217,7 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
 
     /// [`visit`](Self::visit) for visitors of points only, with a kernel that has [`Kernel::bits`].
     #[inline]
-    fn visit_in_lanes<V: Visit>(mut self, mut visitor: V, mut lanes: Lanes<R>) -> V {
+    fn visit_in_lanes<V: Visit>(&mut self, mut visitor: V, mut lanes: Lanes<R>) -> V {
         let mut chunk = Chunk::default();
         loop {
             let (mut i, j) = self.position;

@@ -20,13 +20,22 @@ const LARGEST: u64 = 300;
 const SETUP: u64 = 24;
 
 /// How often a patch is split at most on the way to a piece.
-pub(super) const DEPTH: usize = 8;
+const DEPTH: usize = 8;
 
-/// Slots for nets: one per level, and one for what is only looked at.
-const SLOTS: usize = DEPTH + 1;
+/// The room for nets of a class of patches: points of the largest, and how often they are split at most.
+const fn room(points: usize) -> (usize, usize) {
+    match points {
+        0..=16 => (16, 8),
+        17..=21 => (21, 6),
+        22..=45 => (45, 8),
+        _ => ((MAX_DEGREE + 1) * (MAX_DEGREE + 1), 8),
+    }
+}
 
-/// Storage for the pieces of patches of up to `LEN` points.
-type Slots<T, const LEN: usize> = [[T; LEN]; SLOTS];
+/// How often a patch with so many control points is split at most.
+pub(super) const fn depth(points: usize) -> usize {
+    room(points).1
+}
 
 /// What is done with pieces.
 pub(super) trait Pieces {
@@ -40,34 +49,31 @@ pub(super) trait Pieces {
     fn split(&mut self);
 }
 
-/// The bytes of stack that the pieces of a patch with `points` control points take.
+/// The bytes of stack that the pieces of a patch with `points` control points take: a net for each level, and one for
+/// what is only looked at.
 pub(super) const fn storage(points: usize, rational: bool) -> usize {
-    let room = if points <= 21 {
-        21
-    } else if points <= 45 {
-        45
-    } else {
-        (MAX_DEGREE + 1) * (MAX_DEGREE + 1)
-    };
-    SLOTS * room * (size_of::<Point3>() + if rational { size_of::<I16F16>() } else { 0 })
+    let (len, depth) = room(points);
+    (depth + 1) * len * (size_of::<Point3>() + if rational { size_of::<I16F16>() } else { 0 })
 }
 
 /// Walks the pieces of a patch.
 pub(super) fn each_piece(net: SurfaceNet<'_>, pieces: &mut dyn Pieces) {
     match (net.points().len(), net.weights().is_some()) {
-        (..=21, false) => with_room::<21, 0>(net, pieces),
-        (..=21, true) => with_room::<21, 21>(net, pieces),
-        (..=45, false) => with_room::<45, 0>(net, pieces),
-        (..=45, true) => with_room::<45, 45>(net, pieces),
-        (_, false) => with_room::<81, 0>(net, pieces),
-        (_, true) => with_room::<81, 81>(net, pieces),
+        (..=16, false) => with_room::<16, 0, 9>(net, pieces),
+        (..=16, true) => with_room::<16, 16, 9>(net, pieces),
+        (..=21, false) => with_room::<21, 0, 7>(net, pieces),
+        (..=21, true) => with_room::<21, 21, 7>(net, pieces),
+        (..=45, false) => with_room::<45, 0, 9>(net, pieces),
+        (..=45, true) => with_room::<45, 45, 9>(net, pieces),
+        (_, false) => with_room::<81, 0, 9>(net, pieces),
+        (_, true) => with_room::<81, 81, 9>(net, pieces),
     }
 }
 
 #[inline(never)]
-fn with_room<const LEN: usize, const WEIGHTS: usize>(net: SurfaceNet<'_>, pieces: &mut dyn Pieces) {
-    let mut points: Slots<Point3, LEN> = [[Point3::ORIGIN; LEN]; SLOTS];
-    let mut weights: Slots<I16F16, WEIGHTS> = [[I16F16::ONE; WEIGHTS]; SLOTS];
+fn with_room<const LEN: usize, const WEIGHTS: usize, const SLOTS: usize>(net: SurfaceNet<'_>, pieces: &mut dyn Pieces) {
+    let mut points = [[Point3::ORIGIN; LEN]; SLOTS];
+    let mut weights = [[I16F16::ONE; WEIGHTS]; SLOTS];
     let len = net.points().len();
     let weight_len = if WEIGHTS == 0 { 0 } else { len };
     let mut tree = Tree {
@@ -78,6 +84,7 @@ fn with_room<const LEN: usize, const WEIGHTS: usize>(net: SurfaceNet<'_>, pieces
         weight_len,
         path: [(Split::R, 0); DEPTH],
         depth: 0,
+        deepest: SLOTS - 1,
     };
     tree.walk(pieces);
 }
@@ -115,6 +122,7 @@ struct Tree<'n, 's> {
     /// How each was split, and which part is on the way.
     path: [(Split, usize); DEPTH],
     depth: usize,
+    deepest: usize,
 }
 
 impl Tree<'_, '_> {
@@ -134,18 +142,18 @@ impl Tree<'_, '_> {
 
     /// Draws the current piece, or says how it is split.
     fn visit(&mut self, pieces: &mut dyn Pieces) -> Option<Split> {
-        let depth = self.depth;
+        let (depth, deepest) = (self.depth, self.deepest);
         let (piece, slot, weight_slot) = self.current();
         if !pieces.wants(piece) {
             return None;
         }
         let slopes = PieceSlopes::of(piece);
         let direct = !piece.is_triangle() && piece.weights().is_none();
-        if depth < DEPTH && direct && slopes.least_points() > LARGEST {
+        if depth < deepest && direct && slopes.least_points() > LARGEST {
             return Some(longer(piece));
         }
         let sampling = slopes.sampling(piece, true);
-        let split = if depth == DEPTH {
+        let split = if depth == deepest {
             None
         } else if (piece.degrees() != (3, 3) || !direct) && !fits(piece, sampling) {
             Some(if piece.is_triangle() { Split::Triangles } else { Split::Squares })

@@ -1,7 +1,7 @@
 //! Which lattices a patch is drawn by, and with which walker.
 
 use super::pen::Pen;
-use super::pieces::DEPTH;
+use super::pieces::depth;
 use crate::forward::{
     Accumulator, Budget, Form, Kernel, LatticeError, PieceBudget, PieceSlopes, QuotientWalker, Residual, Sampling,
     Visit, Walker, deepest_budget, piece_budget, tangent_bits,
@@ -81,66 +81,64 @@ impl Plan<'_> {
 /// One walk in a stack frame of its own: only the walker in use takes room.
 #[inline(never)]
 fn run<K: Kernel, V: Visit, const R: usize>(kernel: K, plan: &Plan<'_>, visitor: V) {
-    Walker::<K, R>::new(kernel, &plan.form, &plan.budget).visit(visitor);
+    let mut walker = Walker::<K, R>::blank(kernel);
+    walker.set_up(&plan.form, &plan.budget);
+    walker.visit(visitor);
 }
 
 /// The same for a rational patch.
 #[inline(never)]
 fn run_quotient<W: Word, V: Visit, const R: usize>(plan: &Plan<'_>, visitor: V) {
-    QuotientWalker::<W, R>::new(&plan.form, &plan.budget).visit(visitor);
+    let mut walker = QuotientWalker::<W, R>::blank();
+    walker.set_up(&plan.form, &plan.budget);
+    walker.visit(visitor);
 }
 
-/// How a piece is walked: one lattice, or a coarser one and its cells' centres.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PiecePlan {
+/// Calls `f` for each lattice of a piece, and with how often its z is halved: one, or a coarser one and its cells' centres.
+/// `room` holds as many points as the net.
+///
+/// # Errors
+/// [`LatticeError::Budget`] where 128 bits are too few, [`LatticeError::Steps`] above 2^24 steps.
+pub(super) fn each_lattice(
+    net: SurfaceNet<'_>,
     sampling: Sampling,
-    corners: (PieceBudget, Width),
-    centres: Option<(PieceBudget, Width)>,
+    room: &mut [Point3],
+    f: &mut dyn FnMut(&Plan<'_>, u32),
+) -> Result<(), LatticeError> {
+    let sampling = settled(net, sampling);
+    one_lattice(net, sampling, false, room, f)?;
+    if sampling.centres { one_lattice(net, sampling, true, room, f) } else { Ok(()) }
 }
 
-impl PiecePlan {
-    /// The plan for a piece at this sampling; without the centres, at more steps, where they need more than 64 bits.
-    ///
-    /// # Errors
-    /// [`LatticeError::Budget`] where 128 bits are too few, [`LatticeError::Steps`] above 2^24 steps.
-    pub(super) fn of(net: SurfaceNet<'_>, sampling: Sampling) -> Result<Self, LatticeError> {
-        let mut sampling = sampling;
-        if sampling.centres {
-            let plan = Self::at(net, sampling);
-            if plan.is_ok_and(|plan| plan.centres.is_some_and(|(_, width)| width != Width::Full128)) {
-                return plan;
-            }
-            sampling = PieceSlopes::of(net).sampling(net, false);
-        }
-        Self::at(net, sampling)
+/// The sampling without the centres, at more steps, where they need more than 64 bits.
+fn settled(net: SurfaceNet<'_>, sampling: Sampling) -> Sampling {
+    if !sampling.centres {
+        return sampling;
     }
+    let form = Form::surface(net, (sampling.steps.r(), sampling.steps.s())).centres();
+    let fits = lattice(net, &form).is_ok_and(|(_, width)| width != Width::Full128);
+    if fits { sampling } else { PieceSlopes::of(net).sampling(net, false) }
+}
 
-    fn at(net: SurfaceNet<'_>, sampling: Sampling) -> Result<Self, LatticeError> {
-        let steps = (sampling.steps.r(), sampling.steps.s());
+#[inline(never)]
+fn one_lattice(
+    net: SurfaceNet<'_>,
+    sampling: Sampling,
+    centred: bool,
+    room: &mut [Point3],
+    f: &mut dyn FnMut(&Plan<'_>, u32),
+) -> Result<(), LatticeError> {
+    let form = |net, steps| {
         let form = Form::surface(net, steps);
-        let corners = lattice(net, &form)?;
-        let centres = if sampling.centres { Some(lattice(net, &form.centres())?) } else { None };
-        Ok(Self { sampling, corners, centres })
-    }
-
-    /// Whether everything fits 64 bits.
-    fn is_short(&self) -> bool {
-        let short = |(_, width): (PieceBudget, Width)| width != Width::Full128;
-        short(self.corners) && self.centres.is_none_or(short)
-    }
-
-    /// Calls `f` for each lattice of the piece, and with how often its z is halved; `room` holds as many points as the net.
-    pub(super) fn each_lattice(&self, net: SurfaceNet<'_>, room: &mut [Point3], mut f: impl FnMut(Plan<'_>, u32)) {
-        let turn = PieceSlopes::of(net).turn(net.is_triangle(), self.sampling.centres);
-        let (r, s) = (self.sampling.steps.r(), self.sampling.steps.s());
-        let steps = if turn == 1 { (s, r) } else { (r, s) };
-        for (lattice, centred) in [(Some(self.corners), false), (self.centres, true)] {
-            let Some((PieceBudget { budget, halvings }, width)) = lattice else { continue };
-            let rounded = round_net(net, (budget.fraction_bits, halvings), room);
-            let form = Form::surface(rounded, (1, 1)).turned(turn, steps);
-            f(Plan { form: if centred { form.centres() } else { form }, budget, width }, halvings);
-        }
-    }
+        if centred { form.centres() } else { form }
+    };
+    let (r, s) = (sampling.steps.r(), sampling.steps.s());
+    let (PieceBudget { budget, halvings }, width) = lattice(net, &form(net, (r, s)))?;
+    let rounded = round_net(net, (budget.fraction_bits, halvings), room);
+    let turn = PieceSlopes::of(net).turn(net.is_triangle(), sampling.centres);
+    let form = form(rounded, (1, 1)).turned(turn, if turn == 1 { (s, r) } else { (r, s) });
+    f(&Plan { form, budget, width }, halvings);
+    Ok(())
 }
 
 /// The net with coordinates rounded half up to so many fraction bits, within 2^-(bits + 1), and z halved first.
@@ -160,7 +158,9 @@ fn round_net<'a>(net: SurfaceNet<'a>, (bits, halvings): (u32, u32), room: &'a mu
 
 /// Whether a piece need not be split to be walked: a polynomial one in 64 bits, a rational one at all.
 pub(super) fn fits(net: SurfaceNet<'_>, sampling: Sampling) -> bool {
-    PiecePlan::of(net, sampling).is_ok_and(|plan| plan.is_short() || net.weights().is_some())
+    let Sampling { steps, .. } = settled(net, sampling);
+    let corners = lattice(net, &Form::surface(net, (steps.r(), steps.s())));
+    corners.is_ok_and(|(_, width)| width != Width::Full128 || net.weights().is_some())
 }
 
 /// The budget of a lattice of a piece and the walker that suits it.
@@ -190,5 +190,5 @@ pub(super) fn check_pieces(net: SurfaceNet<'_>, normals: bool) -> Result<(), Lat
     if net.weights().is_some() {
         return Plan::of(Form::surface(net, (sampling.steps.r(), sampling.steps.s())), normals).map(drop);
     }
-    deepest_budget(net, sampling, DEPTH as u32)
+    deepest_budget(net, sampling, depth(net.points().len()) as u32)
 }

@@ -9,7 +9,7 @@ use super::lines::any_family;
 use super::lines::{LineDrawing, families, family};
 use super::pen::{Ink, Pen, Rows};
 use super::pieces::{Pieces, each_piece};
-use super::plan::{PiecePlan, check_pieces};
+use super::plan::{Plan, check_pieces, each_lattice};
 use super::style::{Cull, Style};
 use super::tangents::Tangents;
 use super::tile::{Area, Paint, Tile};
@@ -197,33 +197,39 @@ struct Filling<'s, 'b, 't, P: Paint> {
     statistics: &'t mut Statistics,
 }
 
+impl<P: Paint> Filling<'_, '_, '_, P> {
+    /// Draws one lattice of a piece.
+    fn lattice(&mut self, piece: SurfaceNet<'_>, plan: &Plan<'_>, halvings: u32) {
+        let (area, colour, depth) = self.tile.parts();
+        let (form, window) = (&plan.form, self.shading.window.halved(halvings));
+        let mut shader = Shader {
+            shading: self.shading,
+            canvas: Canvas { paint: self.paint, patch: self.patch, colour },
+            tangents: Tangents::new(piece, form),
+        };
+        plan.draw(Pen {
+            area,
+            depth,
+            window,
+            fraction: Fraction::of(plan.budget.scale, window.bits),
+            ink: self.ink,
+            form,
+            rows: Rows::in_band(form, (area.y, area.y.saturating_add_unsigned(area.height))),
+            points: &mut self.statistics.points,
+            brush: &mut shader,
+        });
+    }
+}
+
 impl<P: Paint> Pieces for Filling<'_, '_, '_, P> {
     fn wants(&mut self, piece: SurfaceNet<'_>) -> bool {
         meets(piece, &self.tile.area()) && (self.cull == Cull::None || !faces_away(&piece, self.inward))
     }
 
     fn piece(&mut self, piece: SurfaceNet<'_>, sampling: Sampling, room: &mut [Point3]) {
-        // Checked in `new`, so it cannot fail here.
-        let Ok(plan) = PiecePlan::of(piece, sampling) else { return };
         self.statistics.pieces += 1;
-        let (area, colour, depth) = self.tile.parts();
-        let band = (area.y, area.y.saturating_add_unsigned(area.height));
-        plan.each_lattice(piece, room, |plan, halvings| {
-            let (form, window) = (&plan.form, self.shading.window.halved(halvings));
-            let canvas = Canvas { paint: self.paint, patch: self.patch, colour };
-            let tangents = Tangents::new(piece, form);
-            plan.draw(Pen {
-                area,
-                depth,
-                window,
-                fraction: Fraction::of(plan.budget.scale, window.bits),
-                ink: self.ink,
-                form,
-                rows: Rows::in_band(form, band),
-                points: &mut self.statistics.points,
-                brush: &mut Shader { shading: self.shading, canvas, net: piece, form, tangents },
-            });
-        });
+        // Checked in `new`, so it cannot fail here.
+        let _ = each_lattice(piece, sampling, room, &mut |plan, halvings| self.lattice(piece, plan, halvings));
     }
 
     fn split(&mut self) {

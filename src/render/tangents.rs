@@ -124,15 +124,31 @@ impl<'a> Tangents<'a> {
         Self { net, along, turn: form.turn(), degrees: form.degrees, strides, row: None, by_r: zero, by_s: zero }
     }
 
+    /// The tangents 1/64 of the way from lattice point (i, j) inwards: where those at the point span no plane.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn inside(&mut self, i: u32, j: u32) -> [[i32; 3]; 2] {
+        let share = if self.net.is_triangle() { 61 } else { 62 };
+        let inwards = |t: u32| (1 << (FRACTION - 6)) + (t >> 6) * share;
+        let (r, s) = (inwards(self.along[0].at(i)), inwards(self.along[1].at(j)));
+        self.row = None;
+        self.at_parameters(r, s, None)
+    }
+
     /// The tangents at lattice point (i, j).
     pub(super) fn at(&mut self, i: u32, j: u32) -> [[i32; 3]; 2] {
-        let (r, s) = (self.along[0].at(i), self.along[1].at(j));
+        self.at_parameters(self.along[0].at(i), self.along[1].at(j), Some(j))
+    }
+
+    /// The tangents at parameters; `row` is the number of the row where it may be used again.
+    #[inline(always)]
+    fn at_parameters(&mut self, r: u32, s: u32, row: Option<u32>) -> [[i32; 3]; 2] {
         if self.net.is_triangle() {
             let s = s.min((1 << FRACTION) - r);
             return triangle(self.net.points(), self.degrees.0, unturned(self.turn, [r, s, (1 << FRACTION) - r - s]));
         }
-        if self.row != Some(j) {
-            self.row = Some(j);
+        if row.is_none() || self.row != row {
+            self.row = row;
             self.collapse(s);
         }
         if self.degrees == (3, 3) {
@@ -155,10 +171,17 @@ impl<'a> Tangents<'a> {
     /// The control vectors along the row at parameter `s`: differences of its control values, and Σ of those across it.
     #[inline(never)]
     fn collapse(&mut self, s: u32) {
-        let (m, h) = self.degrees;
-        if let Some(points) = self.net.points().first_chunk::<16>().filter(|_| (m, h) == (3, 3)) {
-            return self.collapse_bicubic(points, s);
+        if let Some(points) = self.net.points().first_chunk::<16>().filter(|_| self.degrees == (3, 3)) {
+            self.collapse_bicubic(points, s);
+        } else {
+            self.collapse_any(s);
         }
+    }
+
+    /// [`collapse`](Self::collapse) for any degrees.
+    #[inline(never)]
+    fn collapse_any(&mut self, s: u32) {
+        let (m, h) = self.degrees;
         let weights = Weights::of(h, s);
         let (mut along, mut across) = ([[0_i64; 3]; ORDER], [[0_i64; 3]; ORDER]);
         for (a, (along, across)) in along.iter_mut().zip(&mut across).enumerate().take(m + 1) {
