@@ -37,14 +37,14 @@ fn screen(width: u32, height: u32) -> Area {
 fn the_teapot() {
     let small = Look::at(VIEWS[1], (320, 240)).see(&teapot());
     let (counts, per_pixel) = cost(&small, screen(320, 240), 240);
-    assert_eq!(counts, [152_042, 770, 738]);
+    assert_eq!(counts, [152_040, 767, 735]);
     assert!(per_pixel <= 2.4, "{per_pixel}");
     let (counts, per_pixel) = cost(&small, screen(320, 240), 16);
-    assert_eq!(counts, [186_393, 1410, 2011]);
+    assert_eq!(counts, [186_421, 1406, 2005]);
     assert!(per_pixel <= 3.1, "{per_pixel}");
     let large = Look::at(VIEWS[1], (640, 480)).see(&teapot());
     let (counts, per_pixel) = cost(&large, screen(640, 480), 480);
-    assert_eq!(counts, [513_193, 2501, 2469]);
+    assert_eq!(counts, [508_185, 1535, 1503]);
     assert!(per_pixel <= 2.0, "{per_pixel}");
 }
 
@@ -52,7 +52,7 @@ fn the_teapot() {
 fn the_tea_cup() {
     let patches = Look::at((-10.0, 30.0), (320, 240)).see(&teacup());
     let (counts, per_pixel) = cost(&patches, screen(320, 240), 240);
-    assert_eq!(counts, [193_427, 937, 911]);
+    assert_eq!(counts, [192_867, 894, 868]);
     assert!(per_pixel <= 2.7, "{per_pixel}");
 }
 
@@ -71,7 +71,7 @@ fn random_bicubics() {
         })
         .collect();
     let (counts, per_pixel) = cost(&patches, ROOM, ROOM.height);
-    assert_eq!(counts, [1_351_506, 5694, 5670]);
+    assert_eq!(counts, [1_328_219, 1536, 1512]);
     assert!(per_pixel <= 1.7, "{per_pixel}");
 }
 
@@ -91,5 +91,6 @@ fn random_cubic_triangles() {
         .collect();
     let (counts, per_pixel) = cost(&patches, ROOM, ROOM.height);
     assert_eq!(counts, [953_926, 1098, 358]);
-    assert!(per_pixel <= 1.7, "{per_pixel}");
+    // Moved by half as much they take 1.58.
+    assert!(per_pixel <= 2.2, "{per_pixel}");
 }

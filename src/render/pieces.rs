@@ -25,7 +25,7 @@ const DEPTH: usize = 8;
 /// The room for nets of a class of patches: points of the largest, and how often they are split at most.
 const fn room(points: usize) -> (usize, usize) {
     match points {
-        0..=16 => (16, 8),
+        0..=16 => (16, 6),
         17..=21 => (21, 6),
         22..=45 => (45, 8),
         _ => ((MAX_DEGREE + 1) * (MAX_DEGREE + 1), 8),
@@ -59,8 +59,8 @@ pub(super) const fn storage(points: usize, rational: bool) -> usize {
 /// Walks the pieces of a patch.
 pub(super) fn each_piece(net: SurfaceNet<'_>, pieces: &mut dyn Pieces) {
     match (net.points().len(), net.weights().is_some()) {
-        (..=16, false) => with_room::<16, 0, 9>(net, pieces),
-        (..=16, true) => with_room::<16, 16, 9>(net, pieces),
+        (..=16, false) => with_room::<16, 0, 7>(net, pieces),
+        (..=16, true) => with_room::<16, 16, 7>(net, pieces),
         (..=21, false) => with_room::<21, 0, 7>(net, pieces),
         (..=21, true) => with_room::<21, 21, 7>(net, pieces),
         (..=45, false) => with_room::<45, 0, 9>(net, pieces),

@@ -107,6 +107,8 @@ pub(super) struct Tangents<'a> {
     /// Degrees along a row and across, and the strides in storage; of a tensor-product piece.
     degrees: (usize, usize),
     strides: (usize, usize),
+    /// How often the differences of a bicubic can be doubled.
+    doublings: Option<u32>,
     /// The row that the control vectors belong to.
     row: Option<u32>,
     /// Control vectors, along the row, of the tangent along it (one degree less) and of the one across.
@@ -121,7 +123,17 @@ impl<'a> Tangents<'a> {
         let width = net.degrees().1 + 1;
         let strides = if form.turn() == 0 { (width, 1) } else { (1, width) };
         let zero = [[0; 3]; ORDER];
-        Self { net, along, turn: form.turn(), degrees: form.degrees, strides, row: None, by_r: zero, by_s: zero }
+        Self {
+            net,
+            along,
+            turn: form.turn(),
+            degrees: form.degrees,
+            strides,
+            doublings: None,
+            row: None,
+            by_r: zero,
+            by_s: zero,
+        }
     }
 
     /// The tangents 1/64 of the way from lattice point (i, j) inwards: where those at the point span no plane.
@@ -209,29 +221,41 @@ impl<'a> Tangents<'a> {
 }
 
 impl Tangents<'_> {
-    /// [`collapse`](Self::collapse) for a bicubic.
+    /// [`collapse`](Self::collapse) for a bicubic. Coordinates are taken from the first point and doubled until the largest
+    /// has 30 bits; then the upper halves of the sums are what is wanted.
     fn collapse_bicubic(&mut self, points: &[Point3; 16], s: u32) {
+        let halves = |p: &Point3| [p.x.to_bits() >> 1, p.y.to_bits() >> 1, p.z.to_bits() >> 1];
+        let origin = halves(&points[0]);
+        let doublings = *self.doublings.get_or_insert_with(|| {
+            let mut all = 0;
+            for p in points {
+                let [x, y, z] = halves(p);
+                let apart = |c: i32, o: i32| (c - o) ^ ((c - o) >> 31);
+                all |= apart(x, origin[0]) | apart(y, origin[1]) | apart(z, origin[2]);
+            }
+            (all as u32 | 1).leading_zeros().saturating_sub(2)
+        });
         let (below, here) = cubic(s);
-        let (mut along, mut across) = ([[0_i64; 3]; 3], [[0_i64; 3]; 4]);
         let mut before = [0_i64; 3];
         for a in 0..4 {
             let mut row = [[0; 4]; 3];
             for b in 0..4 {
-                let p = &points[(a * self.strides.0 + b * self.strides.1) & 15];
-                (row[0][b], row[1][b], row[2][b]) = (p.x.to_bits() >> 1, p.y.to_bits() >> 1, p.z.to_bits() >> 1);
+                let [x, y, z] = halves(&points[(a * self.strides.0 + b * self.strides.1) & 15]);
+                row[0][b] = (x - origin[0]) << doublings;
+                row[1][b] = (y - origin[1]) << doublings;
+                row[2][b] = (z - origin[2]) << doublings;
             }
             for axis in 0..3 {
                 let [p, q, r, s] = row[axis];
                 let value = product(here[0], p) + product(here[1], q) + product(here[2], r) + product(here[3], s);
-                across[a][axis] = product(below[0], q - p) + product(below[1], r - q) + product(below[2], s - r);
+                let slope = product(below[0], q - p) + product(below[1], r - q) + product(below[2], s - r);
+                self.by_s[a][axis] = (slope >> 32) as i32;
                 if a > 0 {
-                    along[a - 1][axis] = value - before[axis];
+                    self.by_r[a - 1][axis] = ((value - before[axis]) >> 32) as i32;
                 }
                 before[axis] = value;
             }
         }
-        shorten(&along, &mut self.by_r);
-        shorten(&across, &mut self.by_s);
     }
 }
 
