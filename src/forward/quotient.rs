@@ -69,6 +69,14 @@ impl<W: Word, const R: usize> Site for At<'_, W, R> {
         let d = self.row.d[0];
         fraction.divide((d >> 1).wrapping_minus(self.row.t[axis][0]), d)
     }
+
+    fn floor(&self, axis: usize, fraction: &Fraction) -> i32 {
+        // value = x − T/D with T in (−D/2, D/2].
+        let (d, t) = (self.row.d[0], self.row.t[axis][0]);
+        let below = t > W::ZERO;
+        let e = if below { d.wrapping_minus(t) } else { W::ZERO.wrapping_minus(t) };
+        ((self.row.x[axis] - i32::from(below)) << fraction.bits) + fraction.divide(e, d) as i32
+    }
 }
 
 fn to_i64<W: Word>(value: W) -> i64 {

@@ -27,6 +27,7 @@ struct At<'a, W, const R: usize> {
     point: [i32; 3],
     row: &'a Row<W, R>,
     weights: &'a Weights,
+    scale: W,
 }
 
 impl<W: Word, const R: usize> Site for At<'_, W, R> {
@@ -57,12 +58,21 @@ impl<W: Word, const R: usize> Site for At<'_, W, R> {
     fn below(&self, axis: usize, fraction: &Fraction) -> u32 {
         fraction.read(self.row.e[axis])
     }
+
+    #[inline(always)]
+    fn floor(&self, axis: usize, fraction: &Fraction) -> i32 {
+        // value = x + (e − ⌊N/2⌋)/N.
+        let e = self.row.e[axis].wrapping_minus(self.scale >> 1);
+        let (x, e) = if e < W::ZERO { (self.point[axis] - 1, e.wrapping_plus(self.scale)) } else { (self.point[axis], e) };
+        (x << fraction.bits) + fraction.exact(e, self.scale) as i32
+    }
 }
 
 /// A walk over a lattice: the engine itself.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Walker<K: Kernel, const R: usize> {
     kernel: K,
+    scale: K::Word,
     table: [Table<K::Word, R>; 3],
     /// (x, e) at the start of the row, per axis.
     start: ([i32; 3], [K::Word; 3]),
@@ -82,6 +92,7 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
         let table = |axis| difference_table(form, &|a, b| form.bits(axis, a, b) >> drop);
         let mut walker = Self {
             kernel,
+            scale: K::Word::truncate(budget.scale as i128),
             table: core::array::from_fn(table),
             start: ([0; 3], [zero; 3]),
             row: Row { x: [0; 3], e: [zero; 3], d: [[zero; R]; 3], v: [[zero; R]; 3] },
@@ -185,7 +196,7 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
         let (mut i, j) = self.position;
         loop {
             let point = core::array::from_fn(|axis| self.kernel.read(row.x[axis], row.e[axis]));
-            visitor = visitor.point(&At { i, j, point, row: &row, weights: &self.weights });
+            visitor = visitor.point(&At { i, j, point, row: &row, weights: &self.weights, scale: self.scale });
             if i == self.last_in_row {
                 return visitor;
             }
@@ -213,7 +224,7 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
                     lanes.next(&mut chunk);
                     let count = (self.last_in_row - i + 1).min(CHUNK as u32);
                     for (i, point) in (i..).zip(chunk.points(count)) {
-                        visitor = visitor.point(&At { i, j, point, row: &self.row, weights: &self.weights });
+                        visitor = visitor.point(&At { i, j, point, row: &self.row, weights: &self.weights, scale: self.scale });
                     }
                     i += count;
                 }

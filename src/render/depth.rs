@@ -34,6 +34,13 @@ impl DepthWindow {
         depth.min(Self::LARGEST.into()) as u16
     }
 
+    /// The depth of ⌊256·z⌋.
+    #[inline(always)]
+    pub(super) fn depth_of_256(self, z: i32) -> u16 {
+        let above = (z + 128).wrapping_sub(self.low << 8).max(0) as u32;
+        (above >> (8 - self.bits + self.drop)).min(Self::LARGEST.into()) as u16
+    }
+
     /// The lead of lines over surfaces.
     pub(super) fn bias(self) -> u16 {
         ((Lines::BIAS << self.bits) >> self.drop) as u16

@@ -37,6 +37,7 @@
 
 mod depth;
 mod frame;
+mod grid;
 mod light;
 mod lines;
 mod pen;
@@ -49,11 +50,12 @@ mod tile;
 mod tests;
 
 pub use frame::{Band, Frame, Statistics};
+pub use grid::Facet;
 pub use light::Light;
 pub use scene::Scene;
 #[cfg(feature = "styled")]
 pub(crate) use scene::fits_every_style;
-pub use style::{Gloss, Lines, Style};
+pub use style::{Cull, Fill, Gloss, Lines, Style};
 pub use tile::{Area, Fragment, Paint, Tile};
 
 use crate::forward::LatticeError;
@@ -88,6 +90,37 @@ pub enum RenderError {
     },
     /// A light from no direction.
     Light,
+    /// A tolerance of the grid that is not positive.
+    Tolerance {
+        /// The tolerance in 2^-16 pixel.
+        bits: i32,
+    },
+    /// Not one [`PatchTopology`](crate::subdivide::PatchTopology) for each patch: edges of neighbours would be cut into
+    /// different segments.
+    Topology {
+        /// The patches.
+        patches: usize,
+        /// The entries of the topology; 0 without one.
+        given: usize,
+    },
+    /// A patch needs more segments at this tolerance.
+    Segments {
+        /// The index of the patch.
+        index: usize,
+        /// The most that an edge can have.
+        most: u16,
+    },
+    /// The list of facets is too short, or its links are; a list holds at most 65535.
+    Facets {
+        /// The facets of the frame.
+        needed: usize,
+        /// The entries of the list that can be used.
+        given: usize,
+        /// One for each band and each facet.
+        needed_links: usize,
+        /// The links that there are.
+        given_links: usize,
+    },
 }
 
 impl core::fmt::Display for RenderError {
@@ -99,6 +132,17 @@ impl core::fmt::Display for RenderError {
             }
             Self::Area { width, height } => write!(f, "an area of {width} x {height} pixels is not drawable"),
             Self::Light => write!(f, "the light's direction is zero"),
+            Self::Tolerance { bits } => write!(f, "a tolerance of {bits}/65536 pixel is not positive"),
+            Self::Topology { patches, given } => {
+                write!(f, "a grid over {patches} patches needs a topology of as many entries, not {given}")
+            }
+            Self::Segments { index, most } => {
+                write!(f, "patch {index} needs more than {most} segments in a direction at this tolerance")
+            }
+            Self::Facets { needed, given, needed_links, given_links } => write!(
+                f,
+                "{needed} facets with {needed_links} links do not fit {given} entries and {given_links} links"
+            ),
         }
     }
 }

@@ -7,13 +7,15 @@ use super::lines::any_family;
 use super::lines::{LineDrawing, families, family};
 use super::pen::{Occluder, Pen};
 use super::plan::fill_plans;
-use super::style::Style;
+use super::grid::{self, Facet, Facets, Filler, Recorder, Segments};
+use super::style::{Cull, Fill, Style};
 use super::tile::{Area, Paint, Tile};
 use super::{RenderError, Statistics};
 use crate::forward::{Fraction, LatticeError};
 use crate::geometry::Bounds;
 use crate::num::{Coord, I16F16};
 use crate::patch::{Surface, SurfaceNet};
+use crate::subdivide::PatchTopology;
 
 /// Rounded coordinates of a box: what pixels its points can fall on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,6 +61,10 @@ pub struct Scene<'a, S> {
     style: Style,
     window: DepthWindow,
     pixels: Option<PixelBox>,
+    cull: Cull,
+    fill: Fill,
+    topology: &'a [PatchTopology],
+    segments: Option<Segments>,
 }
 
 impl<S> Clone for Scene<'_, S> {
@@ -84,7 +90,85 @@ impl<'a, S: Surface> Scene<'a, S> {
         }
         let pixels = all.map(|b| PixelBox::of(&b));
         let window = pixels.map_or(DepthWindow::of(0, 0), |p| DepthWindow::of(p.min[2], p.max[2]));
-        Ok(Self { patches, light, style, window, pixels })
+        let (cull, fill) = (Cull::None, Fill::Exact);
+        Ok(Self { patches, light, style, window, pixels, cull, fill, topology: &[], segments: None })
+    }
+
+    /// The same scene with sides culled.
+    #[must_use]
+    pub const fn with_cull(self, cull: Cull) -> Self {
+        Self { cull, ..self }
+    }
+
+    /// The same scene with what is known of how its patches meet: one entry for each of
+    /// [`subdivide::topology`](crate::subdivide::topology), found once in model space.
+    ///
+    /// # Errors
+    /// [`RenderError::Topology`] for another number of entries.
+    pub fn with_topology(self, topology: &'a [PatchTopology]) -> Result<Self, RenderError> {
+        if topology.len() != self.patches.len() {
+            return Err(RenderError::Topology { patches: self.patches.len(), given: topology.len() });
+        }
+        Self { topology, ..self }.with_fill(self.fill)
+    }
+
+    /// The same scene, filled by points or by facets. Styles of lines ignore it.
+    ///
+    /// Cost of [`Fill::Grid`]: the segment counts, one pass over the second differences of every net.
+    ///
+    /// # Errors
+    /// [`RenderError::Topology`] for a grid without [`with_topology`](Self::with_topology), [`RenderError::Tolerance`]
+    /// for a tolerance that is not positive, [`RenderError::Segments`] and [`RenderError::Patch`] for a patch whose
+    /// grid has more than 1024 segments in a direction or does not fit the engine.
+    pub fn with_fill(self, fill: Fill) -> Result<Self, RenderError> {
+        let Fill::Grid { tolerance } = fill else { return Ok(Self { fill, segments: None, ..self }) };
+        if self.topology.len() != self.patches.len() {
+            return Err(RenderError::Topology { patches: self.patches.len(), given: self.topology.len() });
+        }
+        let segments = Segments::of(self.patches, self.topology, tolerance)?;
+        let scene = Self { fill, segments: Some(segments), ..self };
+        for index in 0..self.patches.len() {
+            if let Some(patch) = scene.grid_patch(index) {
+                let plan = grid::plan(patch.net, patch.counts, self.style);
+                plan.map_err(|error| RenderError::Patch { index, error })?;
+            }
+        }
+        Ok(scene)
+    }
+
+    /// A patch and its grid; `None` where it is not drawn by one.
+    fn grid_patch(&self, index: usize) -> Option<grid::Patch<'a>> {
+        let segments = self.segments.filter(|_| self.style.lines().is_none())?;
+        let (patch, topology) = (self.patches.get(index)?, self.topology.get(index)?);
+        let net = patch.surface();
+        let (r, s) = segments.counts(net, topology);
+        let inward = (self.cull == Cull::Back).then(|| topology.is_inward());
+        Some(grid::Patch { net, index, counts: (r.into(), s.into()), inward })
+    }
+
+    /// The list of the facets in an area, for bands of `rows` rows; `None` where there are none in this style.
+    pub(super) fn facets<'b>(
+        &self,
+        area: Area,
+        rows: u32,
+        entries: &'b mut [Facet],
+        links: &'b mut [u16],
+    ) -> Result<Option<(Facets<'b>, Statistics)>, RenderError> {
+        if self.segments.is_none() || self.style.lines().is_some() {
+            return Ok(None);
+        }
+        let end = |start: i32, length: u32| start.saturating_add_unsigned(length);
+        let window = [area.x, end(area.x, area.width), area.y, end(area.y, area.height)];
+        let (mut recorder, mut statistics) = (Recorder::new(entries, window), Statistics::default());
+        for index in 0..self.patches.len() {
+            if let Some(patch) = self.grid_patch(index)
+                && PixelBox::of(&patch.net.bounds()).meets(&area, 0)
+            {
+                statistics.patches += 1;
+                statistics += grid::facets(&patch, (&self.light, self.style, self.window), &mut recorder);
+            }
+        }
+        Ok(Some((Facets::of(recorder, links, rows)?, statistics)))
     }
 
     /// The patches.
@@ -121,6 +205,9 @@ impl<'a, S: Surface> Scene<'a, S> {
                 let mut lines = LineDrawing { tile, paint, patch, net, window: self.window, points: 0 };
                 lines.draw(self.style);
                 statistics.points += lines.points;
+            } else if let Some(patch) = self.grid_patch(patch) {
+                let mut filler = Filler { tile, paint };
+                statistics += grid::facets(&patch, (&self.light, self.style, self.window), &mut filler);
             } else if self.style.needs_normals() {
                 self.fill::<P, true>(tile, paint, (patch, net), &mut statistics);
             } else {

@@ -136,6 +136,13 @@ impl<'b, P: Copy> Tile<'b, P> {
             .then(|| row as usize * self.area.width as usize + column as usize)
     }
 
+    /// The colours and stored depths of the columns `from .. to` of a row, all counted from the rectangle's corner.
+    #[inline(always)]
+    pub(super) fn span(&mut self, row: usize, from: usize, to: usize) -> Option<(&mut [P], &mut [u16])> {
+        let start = row * self.area.width as usize;
+        Some((self.colour.get_mut(start + from..start + to)?, self.depth.get_mut(start + from..start + to)?))
+    }
+
     /// Whether `depth` is nearer than what is at the index; it is stored then, as drawn.
     #[inline(always)]
     pub(super) fn is_nearest(&mut self, index: usize, depth: u16) -> bool {

@@ -1,0 +1,292 @@
+//! Fills a convex facet: integer spans, depth and level as linear functions of the pixel.
+
+use super::super::tile::{Fragment, Paint, Tile};
+use super::Output;
+
+/// A convex facet, its corners clockwise on the screen; of a triangle two neighbouring corners are one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::render) struct Quad {
+    /// In 1/256 pixel, less than 2^15 apart.
+    pub(super) x: [i32; 4],
+    pub(super) y: [i32; 4],
+    pub(super) depth: [u16; 4],
+    pub(super) level: [u8; 4],
+    pub(super) patch: usize,
+}
+
+/// A side of a facet on its way down.
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    /// The x of the row in 2^-16 pixel, a little less than one pixel added: shifted right it is the first centre.
+    x: i32,
+    /// What a row adds.
+    step: i32,
+    /// The row after its last one.
+    end: i32,
+}
+
+/// The first pixel centre from a coordinate on.
+fn centre(c: i32) -> i32 {
+    (c + 255) >> 8
+}
+
+impl Edge {
+    const NONE: Self = Self { x: 0, step: 0, end: i32::MIN };
+
+    /// The side from (x0, y0) down to (x1, y1), with rows up to `end` (excluded), at `row`.
+    ///
+    /// It depends on the two vertices alone. |x1 − x0| < 2^15, so the quotient fits 32 bits; the product is formed
+    /// modulo 2^32, and x itself fits.
+    fn new(x0: i32, y0: i32, x1: i32, y1: i32, end: i32, row: i32) -> Self {
+        let step = ((x1 - x0) << 16).checked_div(y1 - y0).unwrap_or(0);
+        let down = (row << 8) - y0;
+        let moved = (step >> 8).wrapping_mul(down).wrapping_add((step & 255).wrapping_mul(down) >> 8);
+        Self { x: (x0 << 8).wrapping_add(moved).wrapping_add(0xffff), step, end }
+    }
+
+    #[inline(always)]
+    fn advance(&mut self) {
+        self.x = self.x.wrapping_add(self.step);
+    }
+}
+
+/// The sides of a facet that go down on one of its two flanks, one after the other.
+#[derive(Clone, Copy, Debug)]
+struct Flank<'q> {
+    quad: &'q Quad,
+    /// The corner that the current side ends in.
+    corner: usize,
+    /// 1 or 3: to the next corner or to the one before.
+    turn: usize,
+    edge: Edge,
+}
+
+impl<'q> Flank<'q> {
+    fn new(quad: &'q Quad, top: usize, turn: usize) -> Self {
+        Self { quad, corner: top, turn, edge: Edge::NONE }
+    }
+
+    /// Moves on to the side that has `row`.
+    #[inline(always)]
+    fn reach(&mut self, row: i32) {
+        let mut sides = 0;
+        while self.edge.end <= row && sides < 4 {
+            let (from, to) = (self.corner & 3, (self.corner + self.turn) & 3);
+            let (x, y) = (&self.quad.x, &self.quad.y);
+            let end = centre(y[to]);
+            if end > row {
+                self.edge = Edge::new(x[from], y[from], x[to], y[to], end, row);
+            }
+            self.corner = to;
+            sides += 1;
+        }
+    }
+}
+
+/// A linear function of the pixel, modulo 2^32: right wherever its value fits.
+#[derive(Clone, Copy, Debug)]
+struct Plane {
+    by_x: i32,
+    by_y: i32,
+    /// The value at pixel (0, 0).
+    origin: i32,
+}
+
+impl Plane {
+    /// The value at pixel (x, y).
+    #[inline(always)]
+    fn at(&self, x: i32, y: i32) -> i32 {
+        self.origin.wrapping_add(self.by_x.wrapping_mul(x)).wrapping_add(self.by_y.wrapping_mul(y))
+    }
+}
+
+/// How values vary over a facet.
+#[derive(Clone, Copy, Debug)]
+enum Shape {
+    /// Along both diagonals: 2^31 over the 16 leading bits of twice the area, and where these stand.
+    Plane { reciprocal: i64, shift: i32 },
+    /// Thin: along x or y only, from one corner to another one.
+    Line { along_y: bool, from: usize, to: usize, length: i32 },
+    /// Smaller than a pixel: not at all.
+    Point,
+}
+
+/// A facet is thin where its longer side squared is more than this times twice its area. Slopes have relative errors
+/// below 2^-14, and values at most 2^-8 of their range then.
+const THIN: u32 = 32;
+
+/// The index of the least and the greatest of four.
+fn extremes(c: &[i32; 4]) -> (usize, usize) {
+    let (mut least, mut greatest) = (0, 0);
+    for k in 1..4 {
+        least = if c[k] < c[least & 3] { k } else { least };
+        greatest = if c[k] > c[greatest & 3] { k } else { greatest };
+    }
+    (least, greatest)
+}
+
+impl Shape {
+    fn of(Quad { x, y, .. }: &Quad, area: u32) -> Self {
+        let (by_x, by_y) = (extremes(x), extremes(y));
+        let (width, height) = (x[by_x.1 & 3] - x[by_x.0 & 3], y[by_y.1 & 3] - y[by_y.0 & 3]);
+        let length = width.max(height);
+        if length < 256 {
+            return Self::Point;
+        }
+        if length.unsigned_abs().pow(2) / THIN > area {
+            let (from, to) = if height > width { by_y } else { by_x };
+            return Self::Line { along_y: height > width, from, to, length };
+        }
+        let shift = 16 - area.leading_zeros() as i32;
+        let leading = if shift >= 0 { area >> shift } else { area << -shift };
+        Self::Plane { reciprocal: (1_u32 << 31).checked_div(leading).unwrap_or(0).into(), shift: 31 + shift }
+    }
+}
+
+/// What the planes over a facet share.
+struct Basis<'q> {
+    quad: &'q Quad,
+    p: [i32; 2],
+    q: [i32; 2],
+    shape: Shape,
+}
+
+impl<'q> Basis<'q> {
+    fn new(quad: &'q Quad) -> Self {
+        let (x, y) = (&quad.x, &quad.y);
+        let (p, q) = ([x[2] - x[0], y[2] - y[0]], [x[3] - x[1], y[3] - y[1]]);
+        // At most 2·127²·2^16 < 2^31: the facet is convex.
+        let area = p[0].wrapping_mul(q[1]).wrapping_sub(p[1].wrapping_mul(q[0])).max(0);
+        Self { quad, p, q, shape: Shape::of(quad, area.unsigned_abs()) }
+    }
+
+    /// The values `v` in units of 2^-bits. Over a quad: through their mean at the mean of the corners, along both
+    /// diagonals as the corners say.
+    fn plane(&self, v: [i32; 4], bits: u32) -> Plane {
+        let (dp, dq) = (v[2] - v[0], v[3] - v[1]);
+        let (x, y) = (&self.quad.x, &self.quad.y);
+        // Four times a point and the value there.
+        let mut at = [x[0] + x[1] + x[2] + x[3], y[0] + y[1] + y[2] + y[3]];
+        let mut value = v[0] + v[1] + v[2] + v[3];
+        let (by_x, by_y) = match self.shape {
+            Shape::Plane { reciprocal, shift } if dp != 0 || dq != 0 => {
+                // Factors below 2^15 and of at most 2^15: their products' difference fits. A pixel is 2^8 units.
+                let cross = |a: i32, b: i32| i64::from(dp.wrapping_mul(a).wrapping_sub(dq.wrapping_mul(b)));
+                let down = shift - 8 - bits as i32;
+                let scale = |n: i64| if down >= 0 { (n * reciprocal) >> down } else { (n * reciprocal) << -down };
+                (scale(cross(self.q[1], self.p[1])), scale(-cross(self.q[0], self.p[0])))
+            }
+            Shape::Line { along_y, from, to, length } => {
+                let (from, to) = (from & 3, to & 3);
+                (at, value) = ([4 * x[from], 4 * y[from]], 4 * v[from]);
+                let slope = (i64::from(v[to] - v[from]) << (8 + bits)).checked_div(length.into()).unwrap_or(0);
+                if along_y { (0, slope) } else { (slope, 0) }
+            }
+            _ => (0, 0),
+        };
+        // Steeper than 2^31 to a pixel: constant.
+        let (by_x, by_y) = match (i32::try_from(by_x), i32::try_from(by_y)) {
+            (Ok(by_x), Ok(by_y)) => (by_x, by_y),
+            _ => (0, 0),
+        };
+        let offset = |slope: i32, at: i32| {
+            let fraction = at & 1023;
+            (slope >> 10).wrapping_mul(fraction).wrapping_add((slope & 1023).wrapping_mul(fraction) >> 10)
+        };
+        let origin = (value << (bits - 2)).wrapping_sub(offset(by_x, at[0])).wrapping_sub(offset(by_y, at[1]));
+        let origin = origin.wrapping_sub(by_x.wrapping_mul(at[0] >> 10)).wrapping_sub(by_y.wrapping_mul(at[1] >> 10));
+        Plane { by_x, by_y, origin }
+    }
+}
+
+/// Fraction bits of interpolated depths, which take 15 bits, and levels.
+const DEPTH_BITS: u32 = 17;
+const LEVEL_BITS: u32 = 16;
+
+/// Fills facets in a tile.
+pub(in crate::render) struct Filler<'f, 'b, P: Paint> {
+    pub(in crate::render) tile: &'f mut Tile<'b, P::Pixel>,
+    pub(in crate::render) paint: &'f P,
+}
+
+impl<P: Paint> Output for Filler<'_, '_, P> {
+    fn window(&self) -> [i32; 4] {
+        let area = self.tile.area();
+        let end = |start: i32, length: u32| start.saturating_add_unsigned(length);
+        [area.x, end(area.x, area.width), area.y, end(area.y, area.height)]
+    }
+
+    #[inline(never)]
+    fn facet(&mut self, quad: &Quad) {
+        let [left, right, top, bottom] = self.window();
+        let (highest, lowest) = extremes(&quad.y);
+        let (mut row, end) = (centre(quad.y[highest & 3]).max(top), centre(quad.y[lowest & 3]).min(bottom));
+        if row >= end {
+            return;
+        }
+        let basis = Basis::new(quad);
+        let depth = basis.plane(quad.depth.map(i32::from), DEPTH_BITS);
+        let level = basis.plane(quad.level.map(i32::from), LEVEL_BITS);
+        // The first column's values, rounded to the nearest level.
+        let mut start = [depth.at(left, row), level.at(left, row).wrapping_add(1 << (LEVEL_BITS - 1))];
+        let (mut before, mut after) = (Flank::new(quad, highest, 3), Flank::new(quad, highest, 1));
+        while row < end {
+            before.reach(row);
+            after.reach(row);
+            let until = before.edge.end.min(after.edge.end).min(end);
+            if until <= row {
+                return;
+            }
+            while row < until {
+                let from = (before.edge.x >> 16).max(left);
+                let to = (after.edge.x >> 16).min(right);
+                if from < to {
+                    let [z, s] = start;
+                    let column = from.wrapping_sub(left);
+                    let z = z.wrapping_add(depth.by_x.wrapping_mul(column));
+                    let s = s.wrapping_add(level.by_x.wrapping_mul(column));
+                    let span = Span { columns: (from, to), row, left, top, z, s, patch: quad.patch };
+                    self.span(span, (depth.by_x, level.by_x));
+                }
+                before.edge.advance();
+                after.edge.advance();
+                start = [start[0].wrapping_add(depth.by_y), start[1].wrapping_add(level.by_y)];
+                row += 1;
+            }
+        }
+    }
+}
+
+/// A run of pixel centres, and depth and level of its first one.
+#[derive(Clone, Copy)]
+struct Span {
+    columns: (i32, i32),
+    row: i32,
+    left: i32,
+    top: i32,
+    z: i32,
+    s: i32,
+    patch: usize,
+}
+
+impl<P: Paint> Filler<'_, '_, P> {
+    #[inline(always)]
+    fn span(&mut self, at: Span, (by_x, level_by_x): (i32, i32)) {
+        let column = |c: i32| c.wrapping_sub(at.left) as usize;
+        let row = at.row.wrapping_sub(at.top) as usize;
+        let Some((colours, depths)) = self.tile.span(row, column(at.columns.0), column(at.columns.1)) else { return };
+        let (mut z, mut s, mut x) = (at.z as u32, at.s, at.columns.0);
+        for (colour, stored) in colours.iter_mut().zip(depths) {
+            let depth = z >> 16;
+            // The lowest bit is no depth yet: it decides nothing, for what is stored is even, or larger than any.
+            if depth < u32::from(*stored) {
+                *stored = depth as u16 & !1;
+                let shade = (s >> LEVEL_BITS).clamp(0, 255) as u8;
+                *colour = self.paint.pixel(Fragment { x, y: at.row, patch: at.patch, shade });
+            }
+            z = z.wrapping_add(by_x as u32);
+            s = s.wrapping_add(level_by_x);
+            x = x.wrapping_add(1);
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! The vertices of a patch's grid, two rows at a time.
+
+use super::super::depth::DepthWindow;
+use super::super::light::short;
+use super::super::style::Style;
+use crate::forward::{Form, Fraction, Site, Visit};
+
+/// Segments of a row that are walked at once. A longer row is cut into strips, each a walk of its own.
+pub(super) const SEGMENTS: usize = 32;
+
+/// A row of vertices; what lies behind those of the walk is old.
+pub(super) type Row = [Vertex; SEGMENTS + 1];
+
+/// Rows j − 1 and j: row j stands at j mod 2.
+pub(super) type Rows = TwoRows;
+
+/// Two rows of vertices.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TwoRows(pub(super) [Row; 2]);
+
+impl TwoRows {
+    pub(super) fn new() -> Self {
+        Self([[Vertex::NONE; SEGMENTS + 1]; 2])
+    }
+}
+
+/// Which side of a patch the light reaches at a vertex; the other one has the ambient level.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Lit {
+    /// Not known yet: computed when a facet asks.
+    Unknown,
+    /// The side to which S_r × S_s points.
+    Along,
+    /// The other side.
+    Against,
+    /// The level does not depend on the side.
+    Both,
+}
+
+/// A vertex of a grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Vertex {
+    /// ⌊256·x⌋ and ⌊256·y⌋ of the exact point.
+    pub(super) x: i32,
+    pub(super) y: i32,
+    /// The depth of ⌊256·z⌋, with room on both sides.
+    pub(super) depth: u16,
+    /// The level of the side that is lit.
+    pub(super) level: u8,
+    pub(super) lit: Lit,
+    /// Directions of S_r and S_s, in 14 bits each.
+    pub(super) tangents: [[i16; 3]; 2],
+}
+
+impl Vertex {
+    const NONE: Self = Self { x: 0, y: 0, depth: 0, level: 0, lit: Lit::Unknown, tangents: [[0; 3]; 2] };
+}
+
+/// Room at both ends of the depths, 1/64 of the range: what a plane through a facet may err.
+const ROOM: u16 = 512;
+
+/// A depth of at most [`DepthWindow::LARGEST`] with room on both sides.
+fn with_room(depth: u16) -> u16 {
+    ROOM + depth - (depth >> 5)
+}
+
+/// What is done with a row of vertices and the one before it.
+pub(super) trait RowSink {
+    /// Row `j` is complete, with `count` vertices of the strip.
+    fn row(&mut self, rows: &mut Rows, j: u32, count: usize);
+}
+
+/// Collects rows of vertices on a walk.
+pub(super) struct Collector<'v, const NORMALS: bool> {
+    pub(super) rows: &'v mut Rows,
+    pub(super) sink: &'v mut dyn RowSink,
+    pub(super) style: Style,
+    pub(super) window: DepthWindow,
+    pub(super) fraction: Fraction,
+    pub(super) form: &'v Form<'v>,
+    /// The first and the last column of the strip.
+    pub(super) columns: (u32, u32),
+}
+
+impl<const NORMALS: bool> Collector<'_, NORMALS> {
+    /// The level where it does not depend on a normal.
+    fn level(&self, depth: u16) -> (u8, Lit) {
+        match self.style {
+            _ if NORMALS => (0, Lit::Unknown),
+            Style::DepthCued { near, far } => (self.window.cue(depth, near, far), Lit::Both),
+            _ => (u8::MAX, Lit::Both),
+        }
+    }
+
+    #[inline(never)]
+    fn end_row(&mut self, i: u32, j: u32) {
+        self.sink.row(self.rows, j, (i - self.columns.0) as usize + 1);
+    }
+}
+
+impl<const NORMALS: bool> Visit for Collector<'_, NORMALS> {
+    const TANGENTS: bool = NORMALS;
+
+    #[inline(always)]
+    fn point<S: Site>(mut self, at: &S) -> Self {
+        let (i, j) = (at.i(), at.j());
+        let (first, last) = self.columns;
+        if i < first || i > last {
+            return self;
+        }
+        let depth = self.window.depth_of_256(at.floor(2, &self.fraction));
+        let (level, lit) = self.level(depth);
+        let vertex = Vertex {
+            x: at.floor(0, &self.fraction),
+            y: at.floor(1, &self.fraction),
+            depth: with_room(depth),
+            level,
+            lit,
+            tangents: if NORMALS { at.tangents().map(short) } else { [[0; 3]; 2] },
+        };
+        if let Some(slot) = self.rows.0[(j & 1) as usize].get_mut((i - first) as usize) {
+            *slot = vertex;
+        }
+        if i == last.min(self.form.last_in_row(j)) {
+            self.end_row(i, j);
+        }
+        self
+    }
+}
