@@ -170,7 +170,8 @@ impl Bends {
         }
         while r.max(s) <= u64::from(MOST) {
             let (along_r, along_s) = (self.rr * s * s, self.ss * r * r);
-            if 2 * (along_r + 2 * self.rs * r * s + along_s) <= tolerance * (r * r * s * s) {
+            let mixed = if is_triangle { 2 * self.rs * r * s } else { 0 };
+            if 2 * (along_r + mixed + along_s) <= tolerance * (r * r * s * s) {
                 break;
             }
             if is_triangle {
