@@ -20,6 +20,10 @@ pub(crate) trait Site {
     /// [`Visit::TANGENTS`].
     fn tangents(&self) -> [[Self::Word; 3]; 2];
 
+    /// The mixed derivative, each component exact up to one truncation and a positive factor, where one of the tangents
+    /// vanishes: next to a collapsed side it is what that tangent grows from.
+    fn twist(&self) -> [i64; 3];
+
     /// The bits below the rounded coordinate plus 1/2: about 2^bits times the fraction, below 2^bits.
     fn below(&self, axis: usize, fraction: &Fraction) -> u32;
 

@@ -54,6 +54,10 @@ impl<W: Word, const R: usize> Site for At<'_, W, R> {
         [core::array::from_fn(|axis| self.weights.along_row(&self.row.d[axis])), self.row.v.map(|v| v[0])]
     }
 
+    fn twist(&self) -> [i64; 3] {
+        self.weights.along_rows(&self.row.v)
+    }
+
     #[inline(always)]
     fn below(&self, axis: usize, fraction: &Fraction) -> u32 {
         fraction.read(self.row.e[axis])

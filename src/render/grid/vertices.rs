@@ -92,6 +92,26 @@ impl<const NORMALS: bool> Collector<'_, NORMALS> {
         }
     }
 
+    /// Directions of S_r and S_s; of what grows from one that vanishes.
+    #[inline(always)]
+    fn tangents<S: Site>(&self, at: &S) -> [[i16; 3]; 2] {
+        let tangents = at.tangents().map(short);
+        if tangents.contains(&[0; 3]) { self.limit(tangents, at) } else { tangents }
+    }
+
+    /// Next to the side r = 0, S_s grows as r·S_rs; next to r = 1 as −(1 − r)·S_rs; S_r likewise.
+    #[cold]
+    #[inline(never)]
+    fn limit<S: Site>(&self, [r, s]: [[i16; 3]; 2], at: &S) -> [[i16; 3]; 2] {
+        let twist = at.twist();
+        let from = |start: bool| short(if start { twist } else { twist.map(|c| -c) });
+        match (r == [0; 3], s == [0; 3]) {
+            (true, false) => [from(at.j() == 0), s],
+            (false, true) => [r, from(at.i() == 0)],
+            _ => [r, s],
+        }
+    }
+
     #[inline(never)]
     fn end_row(&mut self, i: u32, j: u32) {
         self.sink.row(self.rows, j, (i - self.columns.0) as usize + 1);
@@ -116,7 +136,7 @@ impl<const NORMALS: bool> Visit for Collector<'_, NORMALS> {
             depth: with_room(depth),
             level,
             lit,
-            tangents: if NORMALS { at.tangents().map(short) } else { [[0; 3]; 2] },
+            tangents: if NORMALS { self.tangents(at) } else { [[0; 3]; 2] },
         };
         if let Some(slot) = self.rows.0[(j & 1) as usize].get_mut((i - first) as usize) {
             *slot = vertex;
