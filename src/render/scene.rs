@@ -129,8 +129,8 @@ impl<'a, S: Surface> Scene<'a, S> {
         let scene = Self { fill, segments: Some(segments), ..self };
         for index in 0..self.patches.len() {
             if let Some(patch) = scene.grid_patch(index) {
-                let plan = grid::plan(patch.net, patch.counts, self.style);
-                plan.map_err(|error| RenderError::Patch { index, error })?;
+                let fits = grid::check(patch.net, patch.counts, self.style);
+                fits.map_err(|error| RenderError::Patch { index, error })?;
             }
         }
         Ok(scene)

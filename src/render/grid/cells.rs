@@ -3,7 +3,7 @@
 use super::super::light::{Light, normal_of, short};
 use super::super::pen::tangents_inside;
 use super::super::style::Style;
-use super::vertices::{Lit, RowSink, Rows, Vertex};
+use super::vertices::{Lit, Row, RowSink, Rows, Vertex};
 use super::{FRACTION_BITS, Output, Quad};
 use crate::forward::Form;
 use crate::patch::SurfaceNet;
@@ -83,91 +83,110 @@ pub(super) struct Cells<'a, O> {
     pub(super) facets: u64,
 }
 
-/// A corner of a cell: its vertex, by row and column in the strip.
-type Corner = (usize, usize);
-
 /// Twice the signed area of three vertices, exact: they are less than 2^15 apart.
+#[inline(always)]
 fn area(a: &Vertex, b: &Vertex, c: &Vertex) -> i32 {
     (b.x - a.x).wrapping_mul(c.y - a.y).wrapping_sub((b.y - a.y).wrapping_mul(c.x - a.x))
 }
 
-/// The first pixel centre from each of two coordinates on.
-fn centres(low: i32, high: i32) -> (i32, i32) {
+/// Whether a pixel centre of `from .. to` lies between the least and the greatest of four coordinates.
+#[inline(always)]
+fn has_centres([a, b, c, d]: [i32; 4], from: i32, to: i32) -> bool {
     let up = |c: i32| (c + (1 << FRACTION_BITS) - 1) >> FRACTION_BITS;
-    (up(low), up(high))
+    let (first, end) = (up(a.min(b).min(c).min(d)), up(a.max(b).max(c).max(d)));
+    first < end && end > from && first < to
 }
 
 /// How far a plane may be from the corners of a quad: 4 times 12 levels, 4 times 1/128 of the depths.
 const WARP: (i32, i32) = (48, 1024);
 
+/// Two rows and the cell between them.
+struct Cell<'r> {
+    above: &'r mut Row,
+    below: &'r mut Row,
+    k: usize,
+    j: u32,
+}
+
+/// A corner of a cell, in the order in which they go round.
+#[derive(Clone, Copy)]
+enum Corner {
+    A,
+    B,
+    C,
+    D,
+}
+
+impl Cell<'_> {
+    #[inline(always)]
+    fn vertex(&mut self, corner: Corner) -> Option<(&mut Vertex, usize, u32)> {
+        let (row, column, j) = match corner {
+            Corner::A => (&mut *self.above, self.k, self.j - 1),
+            Corner::B => (&mut *self.above, self.k + 1, self.j - 1),
+            Corner::C => (&mut *self.below, self.k + 1, self.j),
+            Corner::D => (&mut *self.below, self.k, self.j),
+        };
+        Some((row.get_mut(column)?, column, j))
+    }
+}
+
 impl<O: Output> Cells<'_, O> {
-    /// The cell with the corners (i, j), (i+1, j), (i+1, j+1), (i, j+1); the last two are one in a triangle.
-    fn cell(&mut self, rows: &mut Rows, j: u32, corners: [Corner; 4]) {
-        let Some([a, b, c, d]) = vertices(rows, corners) else { return };
+    /// The cell with the corners (i, j−1), (i+1, j−1), (i+1, j), (i, j); a triangle lacks the third.
+    fn cell(&mut self, mut cell: Cell<'_>, is_triangle: bool) {
+        let (above, below) = (cell.above.get(cell.k..cell.k + 2), cell.below.get(cell.k..cell.k + 2));
+        let (Some([a, b]), Some([d, c])) = (above, below) else { return };
+        let c = if is_triangle { d } else { c };
         let [x_from, x_to, y_from, y_to] = self.output.window();
-        let (first, end) = centres(a.y.min(b.y).min(c.y).min(d.y), a.y.max(b.y).max(c.y).max(d.y));
-        if first >= end || end <= y_from || first >= y_to {
+        if !has_centres([a.y, b.y, c.y, d.y], y_from, y_to) || !has_centres([a.x, b.x, c.x, d.x], x_from, x_to) {
             return;
         }
-        let (first, end) = centres(a.x.min(b.x).min(c.x).min(d.x), a.x.max(b.x).max(c.x).max(d.x));
-        if first >= end || end <= x_from || first >= x_to {
+        let (abc, acd) = (area(a, b, c), area(a, c, d));
+        let hidden = match self.side {
+            Side::Both => (abc | acd) == 0 && area(a, b, d) == 0,
+            Side::Along => abc >= 0 && acd >= 0,
+            Side::Against => abc <= 0 && acd <= 0,
+        };
+        if hidden {
             return;
         }
-        let [abc, acd, abd, bcd] = [area(&a, &b, &c), area(&a, &c, &d), area(&a, &b, &d), area(&b, &c, &d)];
-        let [p, q, r, s] = corners;
+        let (abd, bcd) = (area(a, b, d), area(b, c, d));
+        let third = if is_triangle { Corner::D } else { Corner::C };
         if (abc | acd | abd | bcd) >= 0 || (abc <= 0 && acd <= 0 && abd <= 0 && bcd <= 0) {
-            let along = abc < 0 || acd < 0;
-            self.convex(rows, j, along, corners);
+            self.convex(&mut cell, abc < 0 || acd < 0, [Corner::A, Corner::B, third, Corner::D], !is_triangle);
         } else if (abc >= 0) != (acd >= 0) && (abd >= 0) == (bcd >= 0) {
-            self.convex(rows, j, abd < 0 || bcd < 0, [p, q, s, s]);
-            self.convex(rows, j, abd < 0 || bcd < 0, [q, r, s, s]);
+            let along = abd < 0 || bcd < 0;
+            self.convex(&mut cell, along, [Corner::A, Corner::B, Corner::D, Corner::D], false);
+            self.convex(&mut cell, along, [Corner::B, Corner::C, Corner::D, Corner::D], false);
         } else {
-            self.convex(rows, j, abc < 0, [p, q, r, r]);
-            self.convex(rows, j, acd < 0, [p, r, s, s]);
+            self.convex(&mut cell, abc < 0, [Corner::A, Corner::B, Corner::C, Corner::C], false);
+            self.convex(&mut cell, acd < 0, [Corner::A, Corner::C, Corner::D, Corner::D], false);
         }
     }
 
     /// A convex quad, or a triangle with its last corner twice.
-    fn convex(&mut self, rows: &mut Rows, j: u32, along: bool, corners: [Corner; 4]) {
+    fn convex(&mut self, cell: &mut Cell<'_>, along: bool, corners: [Corner; 4], is_quad: bool) {
         if !self.side.shows(along) {
             return;
         }
-        let levels = corners.map(|(row, column)| {
-            let (i, j) = (self.first + column as u32, if row == (j & 1) as usize { j } else { j - 1 });
-            let vertex = rows.0[row & 1].get_mut(column);
-            vertex.map_or(0, |v| self.lighting.level(v, along, i, j))
-        });
-        let Some(vertices) = vertices(rows, corners) else { return };
-        let depths = vertices.map(|v| v.depth);
-        let warp = |v: [i32; 4]| (v[0] - v[1] + v[2] - v[3]).abs();
-        let is_quad = corners[2] != corners[3];
-        if is_quad && (warp(levels.map(i32::from)) > WARP.0 || warp(depths.map(i32::from)) > WARP.1) {
-            for [p, q, r] in [[0, 1, 2], [0, 2, 3]] {
-                let index = [p, q, r, r];
-                self.send(along, index.map(|k| vertices[k]), index.map(|k| levels[k]));
-            }
+        let mut quad = Quad { x: [0; 4], y: [0; 4], depth: [0; 4], level: [0; 4], patch: self.patch };
+        for (k, corner) in corners.into_iter().enumerate() {
+            // Clockwise on the screen: the other way round where S_r × S_s looks at the viewer.
+            let k = if along { (4 - k) & 3 } else { k };
+            let Some((vertex, column, j)) = cell.vertex(corner) else { return };
+            quad.level[k] = self.lighting.level(vertex, along, self.first + column as u32, j);
+            (quad.x[k], quad.y[k], quad.depth[k]) = (vertex.x, vertex.y, vertex.depth);
+        }
+        let warp = |[a, b, c, d]: [i32; 4]| (a - b + c - d).abs();
+        let is_bent = |q: &Quad| warp(q.level.map(i32::from)) > WARP.0 || warp(q.depth.map(i32::from)) > WARP.1;
+        self.facets += 1;
+        if is_quad && is_bent(&quad) {
+            self.facets += 1;
+            self.output.facet(&quad.corners([0, 1, 2, 2]));
+            self.output.facet(&quad.corners([0, 2, 3, 3]));
         } else {
-            self.send(along, vertices, levels);
+            self.output.facet(&quad);
         }
     }
-
-    /// Sends a facet, clockwise on the screen.
-    fn send(&mut self, along: bool, v: [Vertex; 4], levels: [u8; 4]) {
-        let order = if along { [0, 3, 2, 1] } else { [0, 1, 2, 3] };
-        self.facets += 1;
-        self.output.facet(&Quad {
-            x: order.map(|k| v[k].x),
-            y: order.map(|k| v[k].y),
-            depth: order.map(|k| v[k].depth),
-            level: order.map(|k| levels[k]),
-            patch: self.patch,
-        });
-    }
-}
-
-fn vertices(rows: &Rows, corners: [Corner; 4]) -> Option<[Vertex; 4]> {
-    let [a, b, c, d] = corners.map(|(row, column)| rows.0[row & 1].get(column).copied());
-    Some([a?, b?, c?, d?])
 }
 
 impl<O: Output> RowSink for Cells<'_, O> {
@@ -175,18 +194,16 @@ impl<O: Output> RowSink for Cells<'_, O> {
         if j == 0 {
             return;
         }
-        let (above, below) = ((j as usize + 1) & 1, (j & 1) as usize);
-        for k in 0..count {
-            if k + 1 < count {
-                self.cell(rows, j, [(above, k), (above, k + 1), (below, k + 1), (below, k)]);
-            }
+        let [even, odd] = &mut rows.0;
+        let (above, below) = if j & 1 == 1 { (even, odd) } else { (odd, even) };
+        for k in 0..count.saturating_sub(1) {
+            self.cell(Cell { above, below, k, j }, false);
         }
         // The row before is longer by one in a triangle, unless the strip ends first.
         let form = self.lighting.form;
         let last = self.first + count as u32 - 1;
         if form.last_in_row(j) == last && form.last_in_row(j - 1) > last && count <= super::SEGMENTS {
-            let k = count - 1;
-            self.cell(rows, j, [(above, k), (above, k + 1), (below, k), (below, k)]);
+            self.cell(Cell { above, below, k: count - 1, j }, true);
         }
     }
 }

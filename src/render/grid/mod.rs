@@ -12,6 +12,7 @@
 //! **Bands do not show.** Facets and their order depend on the scene alone; a span, a depth and a level are linear
 //! functions of the pixel in integers modulo 2^32.
 
+mod bicubic;
 mod cells;
 mod counts;
 mod list;
@@ -30,6 +31,7 @@ use super::style::Style;
 use super::{Light, Statistics};
 use crate::forward::{Form, Fraction, LatticeError};
 use crate::patch::SurfaceNet;
+use bicubic::Bicubic;
 use cells::{Cells, Lighting, Side};
 use vertices::{Collector, Rows, SEGMENTS};
 
@@ -45,9 +47,25 @@ pub(super) trait Output {
     fn window(&self) -> [i32; 4];
 }
 
-/// The grid of a patch at these counts.
-pub(super) fn plan<'a>(net: SurfaceNet<'a>, counts: (u32, u32), style: Style) -> Result<Plan<'a>, LatticeError> {
-    Plan::of(Form::surface(net, counts), style.needs_normals())
+/// Who walks the grid of a patch.
+#[allow(clippy::large_enum_variant, reason = "no heap")]
+enum Walk<'a> {
+    Bicubic(Bicubic<'a>),
+    General(Plan<'a>),
+}
+
+impl<'a> Walk<'a> {
+    fn of(net: SurfaceNet<'a>, counts: (u32, u32), style: Style) -> Result<Self, LatticeError> {
+        match Bicubic::of(net, counts) {
+            Some(grid) => Ok(Self::Bicubic(grid)),
+            None => Ok(Self::General(Plan::of(Form::surface(net, counts), style.needs_normals())?)),
+        }
+    }
+}
+
+/// Checks that the grid of a patch at these counts fits the engine.
+pub(super) fn check(net: SurfaceNet<'_>, counts: (u32, u32), style: Style) -> Result<(), LatticeError> {
+    Walk::of(net, counts, style).map(|_| ())
 }
 
 /// One patch of a scene.
@@ -70,22 +88,48 @@ pub(super) fn facets<O: Output>(
     output: &mut O,
 ) -> Statistics {
     // Checked with the scene, so it cannot fail here.
-    let Ok(plan) = plan(patch.net, patch.counts, style) else { return Statistics::default() };
-    let fraction = Fraction::of(plan.budget.scale, FRACTION_BITS);
-    let mut rows = Rows::new();
-    let lighting = Lighting { light, style, net: patch.net, form: &plan.form };
+    let Ok(walk) = Walk::of(patch.net, patch.counts, style) else { return Statistics::default() };
+    let form = match &walk {
+        Walk::Bicubic(grid) => grid.form(),
+        Walk::General(plan) => plan.form,
+    };
+    let lighting = Lighting { light, style, net: patch.net, form: &form };
     let mut cells = Cells { patch: patch.index, lighting, side: Side::of(patch.inward), output, first: 0, facets: 0 };
-    let mut first = 0;
-    while first < plan.form.steps.0 {
-        let last = (first + SEGMENTS as u32).min(plan.form.steps.0);
-        cells.first = first;
-        let (rows, sink) = (&mut rows, &mut cells);
-        if style.needs_normals() {
-            plan.walk(Collector::<true> { rows, sink, style, window, fraction, form: &plan.form, columns: (first, last) });
-        } else {
-            plan.walk(Collector::<false> { rows, sink, style, window, fraction, form: &plan.form, columns: (first, last) });
+    let mut rows = Rows::new();
+    match walk {
+        Walk::Bicubic(grid) => {
+            let level = |depth| level_of(style, window, depth);
+            let level: Option<&dyn Fn(u16) -> u8> = if style.needs_normals() { None } else { Some(&level) };
+            grid.walk(&mut rows, &mut cells, window, level);
         }
-        first = last;
+        Walk::General(plan) => general(&plan, &mut rows, &mut cells, (style, window)),
     }
-    Statistics { vertices: plan.form.point_count(), facets: cells.facets, ..Statistics::default() }
+    Statistics { vertices: form.point_count(), facets: cells.facets, ..Statistics::default() }
+}
+
+/// The level of a depth in styles that need no normals.
+fn level_of(style: Style, window: DepthWindow, depth: u16) -> u8 {
+    match style {
+        Style::DepthCued { near, far } => window.cue(depth, near, far),
+        _ => u8::MAX,
+    }
+}
+
+/// Walks a grid by the point engine, a strip of columns at a time.
+#[inline(never)]
+fn general<O: Output>(plan: &Plan<'_>, rows: &mut Rows, cells: &mut Cells<'_, O>, (style, window): (Style, DepthWindow)) {
+    let fraction = Fraction::of(plan.budget.scale, FRACTION_BITS);
+    let form = &plan.form;
+    let mut first = 0;
+    while first < form.steps.0 {
+        let columns = (first, (first + SEGMENTS as u32).min(form.steps.0));
+        cells.first = first;
+        let (rows, sink) = (&mut *rows, &mut *cells);
+        if style.needs_normals() {
+            plan.walk(Collector::<true> { rows, sink, style, window, fraction, form, columns });
+        } else {
+            plan.walk(Collector::<false> { rows, sink, style, window, fraction, form, columns });
+        }
+        first = columns.1;
+    }
 }

@@ -14,6 +14,14 @@ pub(in crate::render) struct Quad {
     pub(super) patch: usize,
 }
 
+impl Quad {
+    /// The facet of these corners.
+    pub(super) fn corners(&self, index: [usize; 4]) -> Self {
+        let (x, y) = (index.map(|k| self.x[k & 3]), index.map(|k| self.y[k & 3]));
+        Self { x, y, depth: index.map(|k| self.depth[k & 3]), level: index.map(|k| self.level[k & 3]), ..*self }
+    }
+}
+
 /// A side of a facet on its way down.
 #[derive(Clone, Copy, Debug)]
 struct Edge {

@@ -3,6 +3,7 @@
 use super::super::depth::DepthWindow;
 use super::super::light::short;
 use super::super::style::Style;
+use super::level_of;
 use crate::forward::{Form, Fraction, Site, Visit};
 
 /// Segments of a row that are walked at once. A longer row is cut into strips, each a walk of its own.
@@ -53,14 +54,14 @@ pub(super) struct Vertex {
 }
 
 impl Vertex {
-    const NONE: Self = Self { x: 0, y: 0, depth: 0, level: 0, lit: Lit::Unknown, tangents: [[0; 3]; 2] };
+    pub(super) const NONE: Self = Self { x: 0, y: 0, depth: 0, level: 0, lit: Lit::Unknown, tangents: [[0; 3]; 2] };
 }
 
 /// Room at both ends of the depths, 1/64 of the range: what a plane through a facet may err.
 const ROOM: u16 = 512;
 
 /// A depth of at most [`DepthWindow::LARGEST`] with room on both sides.
-fn with_room(depth: u16) -> u16 {
+pub(super) fn with_room(depth: u16) -> u16 {
     ROOM + depth - (depth >> 5)
 }
 
@@ -85,11 +86,7 @@ pub(super) struct Collector<'v, const NORMALS: bool> {
 impl<const NORMALS: bool> Collector<'_, NORMALS> {
     /// The level where it does not depend on a normal.
     fn level(&self, depth: u16) -> (u8, Lit) {
-        match self.style {
-            _ if NORMALS => (0, Lit::Unknown),
-            Style::DepthCued { near, far } => (self.window.cue(depth, near, far), Lit::Both),
-            _ => (u8::MAX, Lit::Both),
-        }
+        if NORMALS { (0, Lit::Unknown) } else { (level_of(self.style, self.window, depth), Lit::Both) }
     }
 
     /// Directions of S_r and S_s; of what grows from one that vanishes.
