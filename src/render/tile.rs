@@ -136,11 +136,13 @@ impl<'b, P: Copy> Tile<'b, P> {
             .then(|| row as usize * self.area.width as usize + column as usize)
     }
 
-    /// The colours and stored depths of the columns `from .. to` of a row, all counted from the rectangle's corner.
+    /// The colours and stored depths of the rows from a row on.
     #[inline(always)]
-    pub(super) fn span(&mut self, row: usize, from: usize, to: usize) -> Option<(&mut [P], &mut [u16])> {
-        let start = row * self.area.width as usize;
-        Some((self.colour.get_mut(start + from..start + to)?, self.depth.get_mut(start + from..start + to)?))
+    pub(super) fn rows_from(&mut self, row: usize) -> impl Iterator<Item = (&mut [P], &mut [u16])> {
+        let width = (self.area.width as usize).max(1);
+        let start = row * width;
+        let colour = self.colour.get_mut(start..).unwrap_or_default().chunks_exact_mut(width);
+        colour.zip(self.depth.get_mut(start..).unwrap_or_default().chunks_exact_mut(width))
     }
 
     /// Whether `depth` is nearer than what is at the index; it is stored then, as drawn.

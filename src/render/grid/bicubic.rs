@@ -6,8 +6,7 @@
 //! with F as large as 29 bits allow; differences are formed modulo 2^32.
 
 use super::super::depth::DepthWindow;
-use super::super::light::short;
-use super::vertices::{Lit, RowSink, Rows, SEGMENTS, Vertex, with_room};
+use super::vertices::{Lit, RowSink, Rows, SEGMENTS, with_room};
 use crate::forward::Form;
 use crate::patch::SurfaceNet;
 
@@ -34,12 +33,26 @@ impl Cubic {
 
     #[inline(always)]
     fn step(&mut self) {
-        for k in 0..3 {
-            self.value[k] = self.value[k].wrapping_add(self.value[k + 1]);
-        }
+        step(&mut self.value);
         self.slope[0] = self.slope[0].wrapping_add(self.slope[1]);
         self.slope[1] = self.slope[1].wrapping_add(self.value[3]);
     }
+}
+
+/// Moves differences on by one.
+#[inline(always)]
+fn step(d: &mut [i32; 4]) {
+    d[0] = d[0].wrapping_add(d[1]);
+    d[1] = d[1].wrapping_add(d[2]);
+    d[2] = d[2].wrapping_add(d[3]);
+}
+
+/// The direction of a vector in 14 bits and a sign.
+#[inline(always)]
+fn direction([x, y, z]: [i32; 3]) -> [i16; 3] {
+    let size = (x ^ (x >> 31)) | (y ^ (y >> 31)) | (z ^ (z >> 31));
+    let shift = 18_u32.saturating_sub(size.leading_zeros());
+    [(x >> shift) as i16, (y >> shift) as i16, (z >> shift) as i16]
 }
 
 /// The coefficients of t, t² and t³.
@@ -62,9 +75,10 @@ impl Exact {
 
     #[inline(always)]
     fn step(&mut self) {
-        for k in 0..3 {
-            self.0[k] += self.0[k + 1];
-        }
+        let Self(d) = self;
+        d[0] += d[1];
+        d[1] += d[2];
+        d[2] += d[3];
     }
 }
 
@@ -173,28 +187,35 @@ impl<'a> Bicubic<'a> {
             if level.is_none() {
                 across = Across::new(&columns, n_r);
             }
-            for i in 0..=n_r {
+            let out = &mut rows.0[(j & 1) as usize];
+            for (i, slot) in out.iter_mut().enumerate().take(n_r as usize + 1) {
+                let i = i as i32;
                 let place = if i == 0 {
-                    [0, 1, 2].map(|axis| by_s.floor(&sides[0][axis]))
+                    exact(&sides[0], by_s)
                 } else if i == n_r {
-                    [0, 1, 2].map(|axis| by_s.floor(&sides[1][axis]))
+                    exact(&sides[1], by_s)
                 } else if is_edge {
-                    [0, 1, 2].map(|axis| by_r.floor(&edge[axis]))
+                    exact(&edge, by_r)
                 } else {
-                    [0, 1, 2].map(|axis| (high(row[axis].value[0] as u32, scale) >> shift) as i32)
+                    let [x, y, z] = &row;
+                    let near = |c: &Cubic| (high(c.value[0] as u32, scale) >> shift) as i32;
+                    [near(x), near(y), near(z)]
                 };
-                let [x, y, z] = [0, 1, 2].map(|axis| self.origin[axis] + place[axis]);
-                let depth = window.depth_of_256(z);
-                let mut vertex = Vertex { x, y, depth: with_room(depth), ..Vertex::NONE };
+                let depth = window.depth_of_256(self.origin[2] + place[2]);
+                (slot.x, slot.y) = (self.origin[0] + place[0], self.origin[1] + place[1]);
+                slot.depth = with_room(depth);
+                let [x, y, z] = &mut row;
                 match level {
-                    Some(level) => (vertex.level, vertex.lit) = (level(depth), Lit::Both),
-                    None => vertex.tangents = across.tangents(row.map(|c| c.slope[0]), (i, n_r), j == 0),
+                    Some(level) => (slot.level, slot.lit) = (level(depth), Lit::Both),
+                    None => {
+                        slot.lit = Lit::Unknown;
+                        slot.tangents = across.tangents([x.slope[0], y.slope[0], z.slope[0]], (i, n_r), j == 0);
+                        across.step();
+                    }
                 }
-                if let Some(slot) = rows.0[(j & 1) as usize].get_mut(i as usize) {
-                    *slot = vertex;
-                }
-                row.iter_mut().for_each(Cubic::step);
-                across.step();
+                x.step();
+                y.step();
+                z.step();
                 if is_edge {
                     edge.iter_mut().for_each(Exact::step);
                 }
@@ -204,6 +225,10 @@ impl<'a> Bicubic<'a> {
             sides.as_flattened_mut().iter_mut().for_each(Exact::step);
         }
     }
+}
+
+fn exact([x, y, z]: &[Exact; 3], by: Cube) -> [i32; 3] {
+    [by.floor(x), by.floor(y), by.floor(z)]
 }
 
 /// The level of a depth, where it does not depend on a normal.
@@ -228,18 +253,17 @@ impl Across {
 
     #[inline(always)]
     fn step(&mut self) {
-        for row in &mut self.row {
-            for k in 0..3 {
-                row[k] = row[k].wrapping_add(row[k + 1]);
-            }
-        }
+        let [x, y, z] = &mut self.row;
+        step(x);
+        step(y);
+        step(z);
     }
 
     /// Directions of S_r and S_s at step i of n; where one vanishes, of what it grows from.
     #[inline(always)]
     fn tangents(&self, along: [i32; 3], at: (i32, i32), is_first: bool) -> [[i16; 3]; 2] {
-        let (r, s) = (short(along), short(self.row.map(|row| row[0])));
-        if r == [0; 3] || s == [0; 3] { self.limit([r, s], at, is_first) } else { [r, s] }
+        let (r, s) = (direction(along), direction([self.row[0][0], self.row[1][0], self.row[2][0]]));
+        if r[0] | r[1] | r[2] == 0 || s[0] | s[1] | s[2] == 0 { self.limit([r, s], at, is_first) } else { [r, s] }
     }
 
     /// Next to r = 0, S_s grows as r·S_rs; next to r = 1 as −(1 − r)·S_rs; S_r likewise.
@@ -249,7 +273,7 @@ impl Across {
         let twist = self.control.map(|[a, b, c, d]| {
             (n - i) * (n - i) * (b - a) + 2 * i * (n - i) * (c - b) + i * i * (d - c)
         });
-        let from = |start: bool| short(if start { twist } else { twist.map(|c| -c) });
+        let from = |start: bool| direction(if start { twist } else { twist.map(|c| -c) });
         match (r == [0; 3], s == [0; 3]) {
             (true, false) => [from(is_first), s],
             (false, true) => [r, from(i == 0)],

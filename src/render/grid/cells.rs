@@ -78,6 +78,8 @@ pub(super) struct Cells<'a, O> {
     pub(super) lighting: Lighting<'a>,
     pub(super) side: Side,
     pub(super) output: &'a mut O,
+    /// The output's.
+    pub(super) window: [i32; 4],
     /// The first column of the strip.
     pub(super) first: u32,
     pub(super) facets: u64,
@@ -136,7 +138,7 @@ impl<O: Output> Cells<'_, O> {
         let (above, below) = (cell.above.get(cell.k..cell.k + 2), cell.below.get(cell.k..cell.k + 2));
         let (Some([a, b]), Some([d, c])) = (above, below) else { return };
         let c = if is_triangle { d } else { c };
-        let [x_from, x_to, y_from, y_to] = self.output.window();
+        let [x_from, x_to, y_from, y_to] = self.window;
         if !has_centres([a.y, b.y, c.y, d.y], y_from, y_to) || !has_centres([a.x, b.x, c.x, d.x], x_from, x_to) {
             return;
         }

@@ -94,7 +94,8 @@ pub(super) fn facets<O: Output>(
         Walk::General(plan) => plan.form,
     };
     let lighting = Lighting { light, style, net: patch.net, form: &form };
-    let mut cells = Cells { patch: patch.index, lighting, side: Side::of(patch.inward), output, first: 0, facets: 0 };
+    let (side, window_of) = (Side::of(patch.inward), output.window());
+    let mut cells = Cells { patch: patch.index, lighting, side, output, window: window_of, first: 0, facets: 0 };
     let mut rows = Rows::new();
     match walk {
         Walk::Bicubic(grid) => {

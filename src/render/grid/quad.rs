@@ -53,8 +53,8 @@ impl Edge {
     }
 
     #[inline(always)]
-    fn advance(&mut self) {
-        self.x = self.x.wrapping_add(self.step);
+    fn advance(&mut self, rows: i32) {
+        self.x = self.x.wrapping_add(self.step.wrapping_mul(rows));
     }
 }
 
@@ -134,8 +134,9 @@ fn extremes(c: &[i32; 4]) -> (usize, usize) {
 }
 
 impl Shape {
-    fn of(Quad { x, y, .. }: &Quad, area: u32) -> Self {
-        let (by_x, by_y) = (extremes(x), extremes(y));
+    /// `by_y`: the corners with the least and the greatest y.
+    fn of(Quad { x, y, .. }: &Quad, area: u32, by_y: (usize, usize)) -> Self {
+        let by_x = extremes(x);
         let (width, height) = (x[by_x.1 & 3] - x[by_x.0 & 3], y[by_y.1 & 3] - y[by_y.0 & 3]);
         let length = width.max(height);
         if length < 256 {
@@ -160,12 +161,12 @@ struct Basis<'q> {
 }
 
 impl<'q> Basis<'q> {
-    fn new(quad: &'q Quad) -> Self {
+    fn new(quad: &'q Quad, by_y: (usize, usize)) -> Self {
         let (x, y) = (&quad.x, &quad.y);
         let (p, q) = ([x[2] - x[0], y[2] - y[0]], [x[3] - x[1], y[3] - y[1]]);
         // At most 2·127²·2^16 < 2^31: the facet is convex.
         let area = p[0].wrapping_mul(q[1]).wrapping_sub(p[1].wrapping_mul(q[0])).max(0);
-        Self { quad, p, q, shape: Shape::of(quad, area.unsigned_abs()) }
+        Self { quad, p, q, shape: Shape::of(quad, area.unsigned_abs(), by_y) }
     }
 
     /// The values `v` in units of 2^-bits. Over a quad: through their mean at the mean of the corners, along both
@@ -217,6 +218,15 @@ pub(in crate::render) struct Filler<'f, 'b, P: Paint> {
     pub(in crate::render) paint: &'f P,
 }
 
+/// What a facet's spans have in common.
+#[derive(Clone, Copy)]
+struct Spans {
+    left: i32,
+    depth_by_x: i32,
+    level_by_x: i32,
+    patch: usize,
+}
+
 impl<P: Paint> Output for Filler<'_, '_, P> {
     fn window(&self) -> [i32; 4] {
         let area = self.tile.area();
@@ -227,17 +237,20 @@ impl<P: Paint> Output for Filler<'_, '_, P> {
     #[inline(never)]
     fn facet(&mut self, quad: &Quad) {
         let [left, right, top, bottom] = self.window();
-        let (highest, lowest) = extremes(&quad.y);
-        let (mut row, end) = (centre(quad.y[highest & 3]).max(top), centre(quad.y[lowest & 3]).min(bottom));
+        let rows_of = extremes(&quad.y);
+        let (mut row, end) = (centre(quad.y[rows_of.0 & 3]).max(top), centre(quad.y[rows_of.1 & 3]).min(bottom));
         if row >= end {
             return;
         }
-        let basis = Basis::new(quad);
+        let basis = Basis::new(quad, rows_of);
         let depth = basis.plane(quad.depth.map(i32::from), DEPTH_BITS);
         let level = basis.plane(quad.level.map(i32::from), LEVEL_BITS);
         // The first column's values, rounded to the nearest level.
-        let mut start = [depth.at(left, row), level.at(left, row).wrapping_add(1 << (LEVEL_BITS - 1))];
-        let (mut before, mut after) = (Flank::new(quad, highest, 3), Flank::new(quad, highest, 1));
+        let (mut z, mut s) = (depth.at(left, row), level.at(left, row).wrapping_add(1 << (LEVEL_BITS - 1)));
+        let (mut before, mut after) = (Flank::new(quad, rows_of.0, 3), Flank::new(quad, rows_of.0, 1));
+        let width = right.wrapping_sub(left);
+        let spans = Spans { left, depth_by_x: depth.by_x, level_by_x: level.by_x, patch: quad.patch };
+        let mut lines = self.tile.rows_from(row.wrapping_sub(top) as usize);
         while row < end {
             before.reach(row);
             after.reach(row);
@@ -245,56 +258,52 @@ impl<P: Paint> Output for Filler<'_, '_, P> {
             if until <= row {
                 return;
             }
-            while row < until {
-                let from = (before.edge.x >> 16).max(left);
-                let to = (after.edge.x >> 16).min(right);
-                if from < to {
-                    let [z, s] = start;
-                    let column = from.wrapping_sub(left);
-                    let z = z.wrapping_add(depth.by_x.wrapping_mul(column));
-                    let s = s.wrapping_add(level.by_x.wrapping_mul(column));
-                    let span = Span { columns: (from, to), row, left, top, z, s, patch: quad.patch };
-                    self.span(span, (depth.by_x, level.by_x));
+            let (mut from, mut to) = (before.edge.x.wrapping_sub(left << 16), after.edge.x.wrapping_sub(left << 16));
+            for row in row..until {
+                let Some((colours, depths)) = lines.next() else { return };
+                let (first, last) = ((from >> 16).max(0), (to >> 16).min(width));
+                if first < last
+                    && let Some(colours) = colours.get_mut(first as usize..last as usize)
+                    && let Some(depths) = depths.get_mut(first as usize..last as usize)
+                {
+                    let at = (first, row);
+                    let z = z.wrapping_add(depth.by_x.wrapping_mul(first));
+                    let s = s.wrapping_add(level.by_x.wrapping_mul(first));
+                    span(self.paint, (colours, depths), at, (z as u32, s), spans);
                 }
-                before.edge.advance();
-                after.edge.advance();
-                start = [start[0].wrapping_add(depth.by_y), start[1].wrapping_add(level.by_y)];
-                row += 1;
+                from = from.wrapping_add(before.edge.step);
+                to = to.wrapping_add(after.edge.step);
+                z = z.wrapping_add(depth.by_y);
+                s = s.wrapping_add(level.by_y);
             }
+            let rows = until - row;
+            before.edge.advance(rows);
+            after.edge.advance(rows);
+            row = until;
         }
     }
 }
 
-/// A run of pixel centres, and depth and level of its first one.
-#[derive(Clone, Copy)]
-struct Span {
-    columns: (i32, i32),
-    row: i32,
-    left: i32,
-    top: i32,
-    z: i32,
-    s: i32,
-    patch: usize,
-}
-
-impl<P: Paint> Filler<'_, '_, P> {
-    #[inline(always)]
-    fn span(&mut self, at: Span, (by_x, level_by_x): (i32, i32)) {
-        let column = |c: i32| c.wrapping_sub(at.left) as usize;
-        let row = at.row.wrapping_sub(at.top) as usize;
-        let Some((colours, depths)) = self.tile.span(row, column(at.columns.0), column(at.columns.1)) else { return };
-        let (mut z, mut s, mut x) = (at.z as u32, at.s, at.columns.0);
-        for (colour, stored) in colours.iter_mut().zip(depths) {
-            let depth = z >> 16;
-            // The lowest bit is no depth yet: it decides nothing, for what is stored is even, or larger than any.
-            if depth < u32::from(*stored) {
-                *stored = depth as u16 & !1;
-                let shade = (s >> LEVEL_BITS).clamp(0, 255) as u8;
-                *colour = self.paint.pixel(Fragment { x, y: at.row, patch: at.patch, shade });
-            }
-            z = z.wrapping_add(by_x as u32);
-            s = s.wrapping_add(level_by_x);
-            x = x.wrapping_add(1);
+/// Fills a run of pixels from column `x` (counted from the tile's) on.
+#[inline(always)]
+fn span<P: Paint>(
+    paint: &P,
+    (colours, depths): (&mut [P::Pixel], &mut [u16]),
+    (x, y): (i32, i32),
+    (mut z, mut s): (u32, i32),
+    Spans { left, depth_by_x, level_by_x, patch }: Spans,
+) {
+    let mut x = left.wrapping_add(x);
+    for (colour, stored) in colours.iter_mut().zip(depths) {
+        let depth = z >> 16;
+        // The lowest bit is no depth yet: it decides nothing, for what is stored is even, or larger than any.
+        if depth < u32::from(*stored) {
+            *stored = depth as u16 & !1;
+            let shade = (s >> LEVEL_BITS).clamp(0, 255) as u8;
+            *colour = paint.pixel(Fragment { x, y, patch, shade });
         }
+        z = z.wrapping_add(depth_by_x as u32);
+        s = s.wrapping_add(level_by_x);
+        x = x.wrapping_add(1);
     }
 }

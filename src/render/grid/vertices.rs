@@ -54,7 +54,7 @@ pub(super) struct Vertex {
 }
 
 impl Vertex {
-    pub(super) const NONE: Self = Self { x: 0, y: 0, depth: 0, level: 0, lit: Lit::Unknown, tangents: [[0; 3]; 2] };
+    const NONE: Self = Self { x: 0, y: 0, depth: 0, level: 0, lit: Lit::Unknown, tangents: [[0; 3]; 2] };
 }
 
 /// Room at both ends of the depths, 1/64 of the range: what a plane through a facet may err.
