@@ -81,17 +81,62 @@ impl<'a, S: Surface> Scene<'a, S> {
     /// # Errors
     /// [`RenderError::Patch`] for the first patch whose hole-free lattice needs more than 128 bits.
     pub fn new(patches: &'a [S], light: Light, style: Style) -> Result<Self, RenderError> {
+        let scene = Self::unchecked(patches, light, style);
+        scene.check_exact()?;
+        Ok(scene)
+    }
+
+    /// A scene filled by facets from the start: what [`new`](Self::new), [`with_topology`](Self::with_topology) and
+    /// [`with_fill`](Self::with_fill) make in turn, without checking that exact points would fit the engine. That check
+    /// costs more than a frame of facets.
+    ///
+    /// ```
+    /// use embedded_surfaces::num::I16F16;
+    /// use embedded_surfaces::patch::BilinearPatch;
+    /// use embedded_surfaces::render::{Light, Scene, Style};
+    /// use embedded_surfaces::subdivide::{PatchTopology, topology};
+    /// let square = [BilinearPatch::from_ints([[[1, 1, 0], [1, 6, 0]], [[6, 1, 0], [6, 6, 0]]])?];
+    /// let mut edges = [PatchTopology::default()];
+    /// topology(&square, &mut edges)?;
+    /// let scene = Scene::grid(&square, &edges, I16F16::ONE, Light::default(), Style::Shaded)?;
+    /// # let _ = scene;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`with_topology`](Self::with_topology) and [`with_fill`](Self::with_fill), and for a style of lines
+    /// those of [`new`](Self::new).
+    pub fn grid(
+        patches: &'a [S],
+        topology: &'a [PatchTopology],
+        tolerance: I16F16,
+        light: Light,
+        style: Style,
+    ) -> Result<Self, RenderError> {
+        let scene = Self { topology, ..Self::unchecked(patches, light, style) };
+        if style.lines().is_some() {
+            scene.check_exact()?;
+        }
+        scene.with_fill(Fill::Grid { tolerance })
+    }
+
+    fn check_exact(&self) -> Result<(), RenderError> {
+        for (index, patch) in self.patches.iter().enumerate() {
+            check(patch.surface(), self.style).map_err(|error| RenderError::Patch { index, error })?;
+        }
+        Ok(())
+    }
+
+    fn unchecked(patches: &'a [S], light: Light, style: Style) -> Self {
         let mut all: Option<Bounds> = None;
-        for (index, patch) in patches.iter().enumerate() {
-            let net = patch.surface();
-            check(net, style).map_err(|error| RenderError::Patch { index, error })?;
-            let bounds = net.bounds();
+        for patch in patches {
+            let bounds = patch.surface().bounds();
             all = Some(all.map_or(bounds, |b| b.union(&bounds)));
         }
         let pixels = all.map(|b| PixelBox::of(&b));
         let window = pixels.map_or(DepthWindow::of(0, 0), |p| DepthWindow::of(p.min[2], p.max[2]));
         let (cull, fill) = (Cull::None, Fill::Exact);
-        Ok(Self { patches, light, style, window, pixels, cull, fill, topology: &[], segments: None })
+        Self { patches, light, style, window, pixels, cull, fill, topology: &[], segments: None }
     }
 
     /// The same scene with sides culled.
@@ -109,7 +154,8 @@ impl<'a, S: Surface> Scene<'a, S> {
         if topology.len() != self.patches.len() {
             return Err(RenderError::Topology { patches: self.patches.len(), given: topology.len() });
         }
-        Self { topology, ..self }.with_fill(self.fill)
+        let scene = Self { topology, ..self };
+        if self.fill == Fill::Exact { Ok(scene) } else { scene.with_fill(self.fill) }
     }
 
     /// The same scene, filled by points or by facets. Styles of lines ignore it.
@@ -121,7 +167,10 @@ impl<'a, S: Surface> Scene<'a, S> {
     /// for a tolerance that is not positive, [`RenderError::Segments`] and [`RenderError::Patch`] for a patch whose
     /// grid has more than 1024 segments in a direction or does not fit the engine.
     pub fn with_fill(self, fill: Fill) -> Result<Self, RenderError> {
-        let Fill::Grid { tolerance } = fill else { return Ok(Self { fill, segments: None, ..self }) };
+        let Fill::Grid { tolerance } = fill else {
+            self.check_exact()?;
+            return Ok(Self { fill, segments: None, ..self });
+        };
         if self.topology.len() != self.patches.len() {
             return Err(RenderError::Topology { patches: self.patches.len(), given: self.topology.len() });
         }

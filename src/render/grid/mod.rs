@@ -87,6 +87,9 @@ pub(super) fn facets<O: Output>(
     (light, style, window): (&Light, Style, DepthWindow),
     output: &mut O,
 ) -> Statistics {
+    if patch.inward.is_some_and(|inward| bicubic::faces_away(patch.net, inward)) {
+        return Statistics::default();
+    }
     // Checked with the scene, so it cannot fail here.
     let Ok(walk) = Walk::of(patch.net, patch.counts, style) else { return Statistics::default() };
     let form = match &walk {

@@ -101,6 +101,19 @@ struct Plane {
 }
 
 impl Plane {
+    /// The same slopes, with the value `origin` at a point, given four times.
+    #[inline(always)]
+    fn through(self, at: [i32; 2]) -> Self {
+        let Self { by_x, by_y, origin } = self;
+        let offset = |slope: i32, at: i32| {
+            let fraction = at & 1023;
+            (slope >> 10).wrapping_mul(fraction).wrapping_add((slope & 1023).wrapping_mul(fraction) >> 10)
+        };
+        let origin = origin.wrapping_sub(offset(by_x, at[0])).wrapping_sub(offset(by_y, at[1]));
+        let origin = origin.wrapping_sub(by_x.wrapping_mul(at[0] >> 10)).wrapping_sub(by_y.wrapping_mul(at[1] >> 10));
+        Self { by_x, by_y, origin }
+    }
+
     /// The value at pixel (x, y).
     #[inline(always)]
     fn at(&self, x: i32, y: i32) -> i32 {
@@ -111,8 +124,8 @@ impl Plane {
 /// How values vary over a facet.
 #[derive(Clone, Copy, Debug)]
 enum Shape {
-    /// Along both diagonals: 2^31 over the 16 leading bits of twice the area, and where these stand.
-    Plane { reciprocal: i64, shift: i32 },
+    /// Along both diagonals: 2^46 over the 16 leading bits of twice the area, and where these stand.
+    Plane { reciprocal: i32, shift: i32 },
     /// Thin: along x or y only, from one corner to another one.
     Line { along_y: bool, from: usize, to: usize, length: i32 },
     /// Smaller than a pixel: not at all.
@@ -124,6 +137,7 @@ enum Shape {
 const THIN: u32 = 32;
 
 /// The index of the least and the greatest of four.
+#[inline(always)]
 fn extremes(c: &[i32; 4]) -> (usize, usize) {
     let (mut least, mut greatest) = (0, 0);
     for k in 1..4 {
@@ -131,25 +145,6 @@ fn extremes(c: &[i32; 4]) -> (usize, usize) {
         greatest = if c[k] > c[greatest & 3] { k } else { greatest };
     }
     (least, greatest)
-}
-
-impl Shape {
-    /// `by_y`: the corners with the least and the greatest y.
-    fn of(Quad { x, y, .. }: &Quad, area: u32, by_y: (usize, usize)) -> Self {
-        let by_x = extremes(x);
-        let (width, height) = (x[by_x.1 & 3] - x[by_x.0 & 3], y[by_y.1 & 3] - y[by_y.0 & 3]);
-        let length = width.max(height);
-        if length < 256 {
-            return Self::Point;
-        }
-        if length.unsigned_abs().pow(2) / THIN > area {
-            let (from, to) = if height > width { by_y } else { by_x };
-            return Self::Line { along_y: height > width, from, to, length };
-        }
-        let shift = 16 - area.leading_zeros() as i32;
-        let leading = if shift >= 0 { area >> shift } else { area << -shift };
-        Self::Plane { reciprocal: (1_u32 << 31).checked_div(leading).unwrap_or(0).into(), shift: 31 + shift }
-    }
 }
 
 /// What the planes over a facet share.
@@ -161,56 +156,82 @@ struct Basis<'q> {
 }
 
 impl<'q> Basis<'q> {
-    fn new(quad: &'q Quad, by_y: (usize, usize)) -> Self {
+    /// `height`: that of the facet.
+    #[inline(always)]
+    fn new(quad: &'q Quad, height: i32) -> Self {
         let (x, y) = (&quad.x, &quad.y);
         let (p, q) = ([x[2] - x[0], y[2] - y[0]], [x[3] - x[1], y[3] - y[1]]);
         // At most 2·127²·2^16 < 2^31: the facet is convex.
-        let area = p[0].wrapping_mul(q[1]).wrapping_sub(p[1].wrapping_mul(q[0])).max(0);
-        Self { quad, p, q, shape: Shape::of(quad, area.unsigned_abs(), by_y) }
+        let area = p[0].wrapping_mul(q[1]).wrapping_sub(p[1].wrapping_mul(q[0])).max(0).unsigned_abs();
+        let width = x[0].max(x[1]).max(x[2]).max(x[3]) - x[0].min(x[1]).min(x[2]).min(x[3]);
+        let length = width.max(height);
+        let shape = if length < 256 || length.unsigned_abs().pow(2) / THIN > area {
+            Self::odd_shape(quad, width, height)
+        } else {
+            let leading = area << area.leading_zeros() >> 16;
+            let reciprocal = (1_u32 << 31).checked_div(leading).unwrap_or(0).min((1 << 16) - 1) << 15;
+            Shape::Plane { reciprocal: reciprocal as i32, shift: 15 - area.leading_zeros() as i32 }
+        };
+        Self { quad, p, q, shape }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn odd_shape(quad: &Quad, width: i32, height: i32) -> Shape {
+        let length = width.max(height);
+        if length < 256 {
+            return Shape::Point;
+        }
+        let along_y = height > width;
+        let (from, to) = extremes(if along_y { &quad.y } else { &quad.x });
+        Shape::Line { along_y, from, to, length }
     }
 
     /// The values `v` in units of 2^-bits. Over a quad: through their mean at the mean of the corners, along both
     /// diagonals as the corners say.
-    fn plane(&self, v: [i32; 4], bits: u32) -> Plane {
+    #[inline(always)]
+    fn plane(&self, v: [i32; 4], bits: i32) -> Plane {
         let (dp, dq) = (v[2] - v[0], v[3] - v[1]);
+        let sum = v[0] + v[1] + v[2] + v[3];
+        let flat = Plane { by_x: 0, by_y: 0, origin: sum << (bits - 2) };
+        let Shape::Plane { reciprocal, shift } = self.shape else { return self.line(v, bits, flat) };
+        if dp | dq == 0 {
+            return flat;
+        }
+        // Factors below 2^15 and of at most 2^15: the products' difference fits. A pixel is 2^8 units; the reciprocal
+        // has 2^15 more than it should, and the upper half of the product 2^32 less.
+        let cross = |a: i32, b: i32| dp.wrapping_mul(a).wrapping_sub(dq.wrapping_mul(b));
+        let slope = |n: i32| ((i64::from(n) * i64::from(reciprocal)) >> 32) as i32;
+        let (by_x, by_y) = (slope(cross(self.q[1], self.p[1])), slope(cross(self.q[0], self.p[0])).wrapping_neg());
+        let up = bits + 8 - shift - 15;
+        let (by_x, by_y) = if up <= 0 {
+            (by_x >> -up, by_y >> -up)
+        } else if (by_x.unsigned_abs() | by_y.unsigned_abs()).leading_zeros() > up.unsigned_abs() {
+            (by_x << up, by_y << up)
+        } else {
+            // Steeper than 2^31 to a pixel: constant.
+            return flat;
+        };
         let (x, y) = (&self.quad.x, &self.quad.y);
-        // Four times a point and the value there.
-        let mut at = [x[0] + x[1] + x[2] + x[3], y[0] + y[1] + y[2] + y[3]];
-        let mut value = v[0] + v[1] + v[2] + v[3];
-        let (by_x, by_y) = match self.shape {
-            Shape::Plane { reciprocal, shift } if dp != 0 || dq != 0 => {
-                // Factors below 2^15 and of at most 2^15: their products' difference fits. A pixel is 2^8 units.
-                let cross = |a: i32, b: i32| i64::from(dp.wrapping_mul(a).wrapping_sub(dq.wrapping_mul(b)));
-                let down = shift - 8 - bits as i32;
-                let scale = |n: i64| if down >= 0 { (n * reciprocal) >> down } else { (n * reciprocal) << -down };
-                (scale(cross(self.q[1], self.p[1])), scale(-cross(self.q[0], self.p[0])))
-            }
-            Shape::Line { along_y, from, to, length } => {
-                let (from, to) = (from & 3, to & 3);
-                (at, value) = ([4 * x[from], 4 * y[from]], 4 * v[from]);
-                let slope = (i64::from(v[to] - v[from]) << (8 + bits)).checked_div(length.into()).unwrap_or(0);
-                if along_y { (0, slope) } else { (slope, 0) }
-            }
-            _ => (0, 0),
-        };
-        // Steeper than 2^31 to a pixel: constant.
-        let (by_x, by_y) = match (i32::try_from(by_x), i32::try_from(by_y)) {
-            (Ok(by_x), Ok(by_y)) => (by_x, by_y),
-            _ => (0, 0),
-        };
-        let offset = |slope: i32, at: i32| {
-            let fraction = at & 1023;
-            (slope >> 10).wrapping_mul(fraction).wrapping_add((slope & 1023).wrapping_mul(fraction) >> 10)
-        };
-        let origin = (value << (bits - 2)).wrapping_sub(offset(by_x, at[0])).wrapping_sub(offset(by_y, at[1]));
-        let origin = origin.wrapping_sub(by_x.wrapping_mul(at[0] >> 10)).wrapping_sub(by_y.wrapping_mul(at[1] >> 10));
-        Plane { by_x, by_y, origin }
+        Plane { by_x, by_y, ..flat }.through([x[0] + x[1] + x[2] + x[3], y[0] + y[1] + y[2] + y[3]])
+    }
+
+    /// The values along the longer side of a thin facet.
+    #[cold]
+    #[inline(never)]
+    fn line(&self, v: [i32; 4], bits: i32, flat: Plane) -> Plane {
+        let Shape::Line { along_y, from, to, length } = self.shape else { return flat };
+        let (from, to) = (from & 3, to & 3);
+        let slope = (i64::from(v[to] - v[from]) << (8 + bits)).checked_div(length.into()).unwrap_or(0);
+        let Ok(slope) = i32::try_from(slope) else { return flat };
+        let (by_x, by_y) = if along_y { (0, slope) } else { (slope, 0) };
+        Plane { by_x, by_y, origin: v[from] << bits }.through([4 * self.quad.x[from], 4 * self.quad.y[from]])
     }
 }
 
 /// Fraction bits of interpolated depths, which take 15 bits, and levels.
-const DEPTH_BITS: u32 = 17;
-const LEVEL_BITS: u32 = 16;
+const DEPTH_BITS: i32 = 17;
+const LEVEL_BITS: i32 = 16;
 
 /// Fills facets in a tile.
 pub(in crate::render) struct Filler<'f, 'b, P: Paint> {
@@ -242,7 +263,7 @@ impl<P: Paint> Output for Filler<'_, '_, P> {
         if row >= end {
             return;
         }
-        let basis = Basis::new(quad, rows_of);
+        let basis = Basis::new(quad, quad.y[rows_of.1 & 3] - quad.y[rows_of.0 & 3]);
         let depth = basis.plane(quad.depth.map(i32::from), DEPTH_BITS);
         let level = basis.plane(quad.level.map(i32::from), LEVEL_BITS);
         // The first column's values, rounded to the nearest level.
