@@ -170,7 +170,7 @@ impl<'a, S: Surface, P: Paint> Frame<'a, S, P> {
                 Some(facets) => {
                     let band = self.next.checked_div(self.rows).unwrap_or(0) as usize;
                     let end = area.y.saturating_add_unsigned(area.height);
-                    facets.draw(band, end, &mut Filler { tile: &mut tile, paint: self.paint });
+                    facets.draw(band, end, &mut Filler::new(&mut tile, self.paint));
                 }
                 None => self.statistics += self.scene.draw(&mut tile, self.paint),
             }

@@ -255,7 +255,7 @@ impl<'a, S: Surface> Scene<'a, S> {
                 lines.draw(self.style);
                 statistics.points += lines.points;
             } else if let Some(patch) = self.grid_patch(patch) {
-                let mut filler = Filler { tile, paint };
+                let mut filler = Filler::new(tile, paint);
                 statistics += grid::facets(&patch, (&self.light, self.style, self.window), &mut filler);
             } else if self.style.needs_normals() {
                 self.fill::<P, true>(tile, paint, (patch, net), &mut statistics);

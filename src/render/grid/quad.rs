@@ -121,17 +121,6 @@ impl Plane {
     }
 }
 
-/// How values vary over a facet.
-#[derive(Clone, Copy, Debug)]
-enum Shape {
-    /// Along both diagonals: 2^46 over the 16 leading bits of twice the area, and where these stand.
-    Plane { reciprocal: i32, shift: i32 },
-    /// Thin: along x or y only, from one corner to another one.
-    Line { along_y: bool, from: usize, to: usize, length: i32 },
-    /// Smaller than a pixel: not at all.
-    Point,
-}
-
 /// A facet is thin where its longer side squared is more than this times twice its area. Slopes have relative errors
 /// below 2^-14, and values at most 2^-8 of their range then.
 const THIN: u32 = 32;
@@ -147,86 +136,68 @@ fn extremes(c: &[i32; 4]) -> (usize, usize) {
     (least, greatest)
 }
 
-/// What the planes over a facet share.
-struct Basis<'q> {
-    quad: &'q Quad,
-    p: [i32; 2],
-    q: [i32; 2],
-    shape: Shape,
-}
-
-impl<'q> Basis<'q> {
-    /// `height`: that of the facet.
-    #[inline(always)]
-    fn new(quad: &'q Quad, height: i32) -> Self {
-        let (x, y) = (&quad.x, &quad.y);
-        let (p, q) = ([x[2] - x[0], y[2] - y[0]], [x[3] - x[1], y[3] - y[1]]);
-        // At most 2·127²·2^16 < 2^31: the facet is convex.
-        let area = p[0].wrapping_mul(q[1]).wrapping_sub(p[1].wrapping_mul(q[0])).max(0).unsigned_abs();
-        let width = x[0].max(x[1]).max(x[2]).max(x[3]) - x[0].min(x[1]).min(x[2]).min(x[3]);
-        let length = width.max(height);
-        let shape = if length < 256 || length.unsigned_abs().pow(2) / THIN > area {
-            Self::odd_shape(quad, width, height)
-        } else {
-            let leading = area << area.leading_zeros() >> 16;
-            let reciprocal = (1_u32 << 31).checked_div(leading).unwrap_or(0).min((1 << 16) - 1) << 15;
-            Shape::Plane { reciprocal: reciprocal as i32, shift: 15 - area.leading_zeros() as i32 }
-        };
-        Self { quad, p, q, shape }
+/// The planes of depth and level over a facet of this height: through the mean of the corners, along both diagonals as
+/// the corners say.
+#[inline(always)]
+fn planes(quad: &Quad, height: i32) -> [Plane; 2] {
+    let (x, y) = (&quad.x, &quad.y);
+    let (p, q) = ([x[2] - x[0], y[2] - y[0]], [x[3] - x[1], y[3] - y[1]]);
+    // At most 2·127²·2^16 < 2^31: the facet is convex.
+    let area = p[0].wrapping_mul(q[1]).wrapping_sub(p[1].wrapping_mul(q[0])).max(0).unsigned_abs();
+    let width = x[0].max(x[1]).max(x[2]).max(x[3]) - x[0].min(x[1]).min(x[2]).min(x[3]);
+    let length = width.max(height);
+    if length < 256 || length.unsigned_abs().pow(2) / THIN > area {
+        return lines(quad, width, height);
     }
-
-    #[cold]
-    #[inline(never)]
-    fn odd_shape(quad: &Quad, width: i32, height: i32) -> Shape {
-        let length = width.max(height);
-        if length < 256 {
-            return Shape::Point;
-        }
-        let along_y = height > width;
-        let (from, to) = extremes(if along_y { &quad.y } else { &quad.x });
-        Shape::Line { along_y, from, to, length }
-    }
-
-    /// The values `v` in units of 2^-bits. Over a quad: through their mean at the mean of the corners, along both
-    /// diagonals as the corners say.
-    #[inline(always)]
-    fn plane(&self, v: [i32; 4], bits: i32) -> Plane {
+    let zeros = area.leading_zeros();
+    let leading = area << zeros >> 16;
+    // 2^46 over the area's 16 leading bits.
+    let reciprocal = ((1_u32 << 31).checked_div(leading).unwrap_or(0).min((1 << 16) - 1) << 15) as i32;
+    let corner = [x[0] + x[1] + x[2] + x[3], y[0] + y[1] + y[2] + y[3]];
+    let plane = |v: [i32; 4], bits: i32| {
         let (dp, dq) = (v[2] - v[0], v[3] - v[1]);
-        let sum = v[0] + v[1] + v[2] + v[3];
-        let flat = Plane { by_x: 0, by_y: 0, origin: sum << (bits - 2) };
-        let Shape::Plane { reciprocal, shift } = self.shape else { return self.line(v, bits, flat) };
+        let flat = Plane { by_x: 0, by_y: 0, origin: (v[0] + v[1] + v[2] + v[3]) << (bits - 2) };
         if dp | dq == 0 {
             return flat;
         }
-        // Factors below 2^15 and of at most 2^15: the products' difference fits. A pixel is 2^8 units; the reciprocal
-        // has 2^15 more than it should, and the upper half of the product 2^32 less.
+        // Factors below 2^15 and of at most 2^15: the products' difference fits. A pixel is 2^8 units; the reciprocal is
+        // 2^30 times the inverse of the area shifted up by its zeros, and the upper half of the product 2^32 less.
         let cross = |a: i32, b: i32| dp.wrapping_mul(a).wrapping_sub(dq.wrapping_mul(b));
         let slope = |n: i32| ((i64::from(n) * i64::from(reciprocal)) >> 32) as i32;
-        let (by_x, by_y) = (slope(cross(self.q[1], self.p[1])), slope(cross(self.q[0], self.p[0])).wrapping_neg());
-        let up = bits + 8 - shift - 15;
-        let (by_x, by_y) = if up <= 0 {
-            (by_x >> -up, by_y >> -up)
+        let (by_x, by_y) = (slope(cross(q[1], p[1])), slope(cross(q[0], p[0])).wrapping_neg());
+        let up = bits - 22 + zeros as i32;
+        if up <= 0 {
+            Plane { by_x: by_x >> -up, by_y: by_y >> -up, ..flat }.through(corner)
         } else if (by_x.unsigned_abs() | by_y.unsigned_abs()).leading_zeros() > up.unsigned_abs() {
-            (by_x << up, by_y << up)
+            Plane { by_x: by_x << up, by_y: by_y << up, ..flat }.through(corner)
         } else {
             // Steeper than 2^31 to a pixel: constant.
-            return flat;
-        };
-        let (x, y) = (&self.quad.x, &self.quad.y);
-        Plane { by_x, by_y, ..flat }.through([x[0] + x[1] + x[2] + x[3], y[0] + y[1] + y[2] + y[3]])
-    }
+            flat
+        }
+    };
+    [plane(quad.depth.map(i32::from), DEPTH_BITS), plane(quad.level.map(i32::from), LEVEL_BITS)]
+}
 
-    /// The values along the longer side of a thin facet.
-    #[cold]
-    #[inline(never)]
-    fn line(&self, v: [i32; 4], bits: i32, flat: Plane) -> Plane {
-        let Shape::Line { along_y, from, to, length } = self.shape else { return flat };
-        let (from, to) = (from & 3, to & 3);
+/// The planes over a thin facet, linear along x or y only, from one corner to another one; over one below a pixel,
+/// constant.
+#[cold]
+#[inline(never)]
+fn lines(quad: &Quad, width: i32, height: i32) -> [Plane; 2] {
+    let along_y = height > width;
+    let (from, to) = extremes(if along_y { &quad.y } else { &quad.x });
+    let (from, to, length) = (from & 3, to & 3, width.max(height));
+    let line = |v: [i32; 4], bits: i32| {
+        let flat = Plane { by_x: 0, by_y: 0, origin: (v[0] + v[1] + v[2] + v[3]) << (bits - 2) };
         let slope = (i64::from(v[to] - v[from]) << (8 + bits)).checked_div(length.into()).unwrap_or(0);
-        let Ok(slope) = i32::try_from(slope) else { return flat };
-        let (by_x, by_y) = if along_y { (0, slope) } else { (slope, 0) };
-        Plane { by_x, by_y, origin: v[from] << bits }.through([4 * self.quad.x[from], 4 * self.quad.y[from]])
-    }
+        match i32::try_from(slope) {
+            Ok(slope) if length >= 256 => {
+                let (by_x, by_y) = if along_y { (0, slope) } else { (slope, 0) };
+                Plane { by_x, by_y, origin: v[from] << bits }.through([4 * quad.x[from], 4 * quad.y[from]])
+            }
+            _ => flat,
+        }
+    };
+    [line(quad.depth.map(i32::from), DEPTH_BITS), line(quad.level.map(i32::from), LEVEL_BITS)]
 }
 
 /// Fraction bits of interpolated depths, which take 15 bits, and levels.
@@ -235,8 +206,17 @@ const LEVEL_BITS: i32 = 16;
 
 /// Fills facets in a tile.
 pub(in crate::render) struct Filler<'f, 'b, P: Paint> {
-    pub(in crate::render) tile: &'f mut Tile<'b, P::Pixel>,
-    pub(in crate::render) paint: &'f P,
+    tile: &'f mut Tile<'b, P::Pixel>,
+    paint: &'f P,
+    window: [i32; 4],
+}
+
+impl<'f, 'b, P: Paint> Filler<'f, 'b, P> {
+    pub(in crate::render) fn new(tile: &'f mut Tile<'b, P::Pixel>, paint: &'f P) -> Self {
+        let area = tile.area();
+        let end = |start: i32, length: u32| start.saturating_add_unsigned(length);
+        Self { tile, paint, window: [area.x, end(area.x, area.width), area.y, end(area.y, area.height)] }
+    }
 }
 
 /// What a facet's spans have in common.
@@ -250,22 +230,18 @@ struct Spans {
 
 impl<P: Paint> Output for Filler<'_, '_, P> {
     fn window(&self) -> [i32; 4] {
-        let area = self.tile.area();
-        let end = |start: i32, length: u32| start.saturating_add_unsigned(length);
-        [area.x, end(area.x, area.width), area.y, end(area.y, area.height)]
+        self.window
     }
 
     #[inline(never)]
     fn facet(&mut self, quad: &Quad) {
-        let [left, right, top, bottom] = self.window();
+        let [left, right, top, bottom] = self.window;
         let rows_of = extremes(&quad.y);
         let (mut row, end) = (centre(quad.y[rows_of.0 & 3]).max(top), centre(quad.y[rows_of.1 & 3]).min(bottom));
         if row >= end {
             return;
         }
-        let basis = Basis::new(quad, quad.y[rows_of.1 & 3] - quad.y[rows_of.0 & 3]);
-        let depth = basis.plane(quad.depth.map(i32::from), DEPTH_BITS);
-        let level = basis.plane(quad.level.map(i32::from), LEVEL_BITS);
+        let [depth, level] = planes(quad, quad.y[rows_of.1 & 3] - quad.y[rows_of.0 & 3]);
         // The first column's values, rounded to the nearest level.
         let (mut z, mut s) = (depth.at(left, row), level.at(left, row).wrapping_add(1 << (LEVEL_BITS - 1)));
         let (mut before, mut after) = (Flank::new(quad, rows_of.0, 3), Flank::new(quad, rows_of.0, 1));
