@@ -19,6 +19,9 @@ mod list;
 mod quad;
 mod vertices;
 
+#[cfg(all(test, feature = "std"))]
+mod tests;
+
 pub use list::Facet;
 
 pub(super) use counts::Segments;
