@@ -134,10 +134,13 @@ fn run<S: Surface>(arguments: &Arguments, patches: &[S]) -> Result<(), Box<dyn E
         Filling::Exact => Fill::Exact,
         Filling::Grid => {
             let tolerance = fixed_half_up(arguments.tolerance).filter(|t| *t > 0);
-            Fill::Grid { tolerance: tolerance.ok_or_else(|| format!("--tolerance {}: not positive", arguments.tolerance))? }
+            Fill::Grid {
+                tolerance: tolerance.ok_or_else(|| format!("--tolerance {}: not positive", arguments.tolerance))?,
+            }
         }
     };
-    let scene = Scene::new(patches, Light::default(), arguments.style.into())?.with_topology(&edges)?.with_fill(fill)?;
+    let scene =
+        Scene::new(patches, Light::default(), arguments.style.into())?.with_topology(&edges)?.with_fill(fill)?;
     let progress = bar(u64::from(height), "rows drawn");
     let paint = (&Material { colour: COLOUR }, BACKGROUND);
     let statistics =
@@ -149,7 +152,11 @@ fn run<S: Surface>(arguments: &Arguments, patches: &[S]) -> Result<(), Box<dyn E
     println!("  patches            {}", patches.len());
     if arguments.fill == Filling::Grid {
         println!("  vertices           {} of grids, made once", statistics.vertices);
-        println!("  facets             {}, {} bytes", statistics.facets, statistics.facets as usize * size_of::<Facet>());
+        println!(
+            "  facets             {}, {} bytes",
+            statistics.facets,
+            statistics.facets as usize * size_of::<Facet>()
+        );
         return Ok(());
     }
     let points = statistics.points;

@@ -190,7 +190,10 @@ fn levels_of_the_teapot() {
         errors.sort_by(f64::total_cmp);
         let mean = errors.iter().sum::<f64>() / errors.len() as f64;
         let [p50, p99] = [50, 99].map(|p| errors[errors.len() * p / 100]);
-        println!("tolerance {tolerance}: {statistics:?}, {} pixels, mean {mean:.3} p50 {p50:.2} p99 {p99:.2}", errors.len());
+        println!(
+            "tolerance {tolerance}: {statistics:?}, {} pixels, mean {mean:.3} p50 {p50:.2} p99 {p99:.2}",
+            errors.len()
+        );
         assert!(errors.len() > 15_000);
         assert!(mean <= limit.0 && p99 <= limit.1, "mean {mean}, p99 {p99}");
     }
@@ -249,7 +252,8 @@ fn tiles_do_not_show() {
     let mut random = Random(5);
     for _ in 0..60 {
         let mut below = |n: f64| (n * random.unit()) as i32;
-        let area = Area { x: below(300.0), y: below(220.0), width: below(60.0) as u32 + 1, height: below(60.0) as u32 + 1 };
+        let area =
+            Area { x: below(300.0), y: below(220.0), width: below(60.0) as u32 + 1, height: below(60.0) as u32 + 1 };
         let (part, _) = draw(scene, area);
         for (k, level) in part.iter().enumerate() {
             let (x, y) = (area.x + k as i32 % area.width as i32, area.y + k as i32 / area.width as i32);
@@ -313,21 +317,25 @@ fn what_is_refused() {
 #[test]
 fn the_ends_of_the_range() {
     let far = i16::MAX;
-    let flat = [BilinearPatch::from_ints([[[-far, -far, -far], [-far, far, far]], [[far, -far, 0], [far, far, -9]]]).unwrap()];
+    let flat =
+        [BilinearPatch::from_ints([[[-far, -far, -far], [-far, far, far]], [[far, -far, 0], [far, far, -9]]]).unwrap()];
     let flat_edges = edges(&flat);
     let scene = Scene::new(&flat, Light::default(), Style::Shaded).unwrap().with_topology(&flat_edges).unwrap();
     let refused = scene.with_fill(grid(1.0)).unwrap_err();
     assert_eq!(refused, RenderError::Segments { index: 0, most: 1024 });
-    let wide = [BilinearPatch::from_ints([[[-far, 0, -far], [-far, 200, 0]], [[28_000, 0, far], [28_000, 200, -9]]]).unwrap()];
+    let wide =
+        [BilinearPatch::from_ints([[[-far, 0, -far], [-far, 200, 0]], [[28_000, 0, far], [28_000, 200, -9]]]).unwrap()];
     assert_eq!(nothing_missed(&wide, SCREEN, 1.0), 320 * (201 - 4));
     let mut random = Random(11);
     let (mut drawn, mut refused) = (0, 0);
     for _ in 0..60 {
         let size = 10.0_f64.powf(1.0 + 3.5 * random.unit());
-        let net = core::array::from_fn(|i| core::array::from_fn(|j| {
-            let (x, y) = (i as f64 / 3.0, j as f64 / 3.0);
-            random.near(x, y, size.min(16_000.0), 0.9)
-        }));
+        let net = core::array::from_fn(|i| {
+            core::array::from_fn(|j| {
+                let (x, y) = (i as f64 / 3.0, j as f64 / 3.0);
+                random.near(x, y, size.min(16_000.0), 0.9)
+            })
+        });
         let patches = [BicubicPatch::new(net).unwrap()];
         let edges = edges(&patches);
         let scene = Scene::new(&patches, Light::default(), Style::Shaded).unwrap().with_topology(&edges).unwrap();
@@ -337,7 +345,9 @@ fn the_ends_of_the_range() {
                 draw(scene, Area { x: -40, y: -40, width: 200, height: 100 });
                 drawn += 1;
             }
-            Err(RenderError::Segments { .. } | RenderError::Patch { error: LatticeError::Budget { .. }, .. }) => refused += 1,
+            Err(RenderError::Segments { .. } | RenderError::Patch { error: LatticeError::Budget { .. }, .. }) => {
+                refused += 1;
+            }
             Err(error) => panic!("{error}"),
         }
     }

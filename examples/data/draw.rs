@@ -20,7 +20,8 @@ pub(crate) fn in_bands<S: Surface, P: Paint<Pixel = C>, C: PixelColor>(
     mut sent: impl FnMut(u32),
 ) -> Result<Statistics, RenderError> {
     // A host has room for the longest list.
-    let (mut facets, mut links) = (vec![Facet::EMPTY; u16::MAX.into()], vec![0; u16::MAX as usize + area.height as usize]);
+    let (mut facets, mut links) =
+        (vec![Facet::EMPTY; u16::MAX.into()], vec![0; u16::MAX as usize + area.height as usize]);
     let mut frame = Frame::new(scene, paint, background, area, rows)?.with_facets(&mut facets, &mut links)?;
     let (mut colour, mut depth) = (vec![background; frame.band_pixels()], vec![0; frame.band_pixels()]);
     while let Some(band) = frame.next_band(&mut colour, &mut depth)? {

@@ -163,10 +163,7 @@ impl From<RenderError> for Refused {
 }
 
 /// The picture, the lattice points or vertices that it took, and the audit against the reference.
-fn picture(
-    settings: &Settings,
-    nets: &[SurfaceNet<'_>],
-) -> Result<(SimulatorDisplay<Rgb888>, u64, Audit), Refused> {
+fn picture(settings: &Settings, nets: &[SurfaceNet<'_>]) -> Result<(SimulatorDisplay<Rgb888>, u64, Audit), Refused> {
     let mut display = draw::blank(settings.area, settings.background);
     let paint = (&Material { colour: settings.colour }, settings.background);
     let mut edges = vec![PatchTopology::default(); nets.len()];

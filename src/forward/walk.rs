@@ -67,7 +67,8 @@ impl<W: Word, const R: usize> Site for At<'_, W, R> {
     fn floor(&self, axis: usize, fraction: &Fraction) -> i32 {
         // value = x + (e − ⌊N/2⌋)/N.
         let e = self.row.e[axis].wrapping_minus(self.scale >> 1);
-        let (x, e) = if e < W::ZERO { (self.point[axis] - 1, e.wrapping_plus(self.scale)) } else { (self.point[axis], e) };
+        let (x, e) =
+            if e < W::ZERO { (self.point[axis] - 1, e.wrapping_plus(self.scale)) } else { (self.point[axis], e) };
         (x << fraction.bits) + fraction.exact(e, self.scale) as i32
     }
 }
@@ -228,7 +229,14 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
                     lanes.next(&mut chunk);
                     let count = (self.last_in_row - i + 1).min(CHUNK as u32);
                     for (i, point) in (i..).zip(chunk.points(count)) {
-                        visitor = visitor.point(&At { i, j, point, row: &self.row, weights: &self.weights, scale: self.scale });
+                        visitor = visitor.point(&At {
+                            i,
+                            j,
+                            point,
+                            row: &self.row,
+                            weights: &self.weights,
+                            scale: self.scale,
+                        });
                     }
                     i += count;
                 }

@@ -95,7 +95,6 @@ impl Audit {
 /// Whether every centre within `reach` pixels is in the set.
 fn is_inside(set: &Coverage, (x, y): (i32, i32), reach: f64) -> bool {
     let far = reach as i32;
-    (-far..=far).all(|dy| {
-        (-far..=far).all(|dx| f64::from(dx).hypot(f64::from(dy)) > reach || set.contains(x + dx, y + dy))
-    })
+    (-far..=far)
+        .all(|dy| (-far..=far).all(|dx| f64::from(dx).hypot(f64::from(dy)) > reach || set.contains(x + dx, y + dy)))
 }

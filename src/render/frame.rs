@@ -104,8 +104,8 @@ impl<'a, S: Surface, P: Paint> Frame<'a, S, P> {
     /// The same picture, its facets made once instead of anew for each band that they meet: for bands of
     /// [`Fill::Grid`](super::Fill::Grid). Scenes that have no facets ignore the list.
     ///
-    /// `links` holds one number for each band and each facet: a teapot of 320 × 240 pixels in bands of 16 rows at a
-    /// tolerance of 1 pixel takes 1100 facets, 35 KB, and 2.2 KB of links.
+    /// `links` holds one number for each band and each facet. A teapot of 320 × 240 pixels in bands of 16 rows at a
+    /// tolerance of 1 pixel takes 1950 facets, 62 KB, and 3.9 KB of links; without its back sides 990, 32 KB and 2 KB.
     ///
     /// ```
     /// use embedded_surfaces::num::I16F16;

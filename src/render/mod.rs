@@ -19,6 +19,18 @@
 //! **No holes.** Patches are sampled by [`Sampling::cheapest`](crate::forward::Sampling::cheapest): every pixel centre
 //! in the lattice's interpolant is hit, also along shared edges of patches, whatever their step counts.
 //!
+//! # Two fills
+//! | [`Fill`] | what it draws | holes | default teapot, 320 × 240 |
+//! |---|---|---|---|
+//! | `Exact` (default) | every exact point | none | levels within 1 of exact arithmetic |
+//! | `Grid { tolerance }` | facets between exact points of a coarse grid | none but within the tolerance of silhouettes and borders | at 1 pixel: 2467 vertices, 1950 facets, levels off by 2.0 in the mean, 16 at the 99th percentile |
+//!
+//! Points are the reference quality, the grid is the fast path: its cost goes with the facets and the pixels that it
+//! fills, not with points. An edge that patches share is cut alike on both sides, into the same vertices bit by bit, so
+//! there is no crack; [`subdivide::topology`](crate::subdivide::topology) finds once which edges these are. Depth and
+//! level are linear over a facet. In bands, a list of facets ([`Frame::with_facets`]) saves making them anew for every
+//! band. A centre exactly on a border belongs to a facet only if the border is on its left or above.
+//!
 //! # Depth
 //! A `u16` per pixel: 15 bits of depth and one that tells drawn from empty. The depth is the exact lattice z with k
 //! more bits, (z + 1/2 − z_low)·2^k within one unit; z_low and k ≤ 8 come from the scene's z range, so the whole range

@@ -1,13 +1,13 @@
 //! Scenes: what is drawn, checked once.
 
 use super::depth::DepthWindow;
+use super::grid::{self, Facet, Facets, Filler, Recorder, Segments};
 use super::light::Light;
 #[cfg(feature = "styled")]
 use super::lines::any_family;
 use super::lines::{LineDrawing, families, family};
 use super::pen::{Occluder, Pen};
 use super::plan::fill_plans;
-use super::grid::{self, Facet, Facets, Filler, Recorder, Segments};
 use super::style::{Cull, Fill, Style};
 use super::tile::{Area, Paint, Tile};
 use super::{RenderError, Statistics};
@@ -178,7 +178,7 @@ impl<'a, S: Surface> Scene<'a, S> {
         let scene = Self { fill, segments: Some(segments), ..self };
         for index in 0..self.patches.len() {
             if let Some(patch) = scene.grid_patch(index) {
-                let fits = grid::check(patch.net, patch.counts, self.style);
+                let fits = grid::check(patch.net, patch.counts);
                 fits.map_err(|error| RenderError::Patch { index, error })?;
             }
         }
@@ -242,7 +242,8 @@ impl<'a, S: Surface> Scene<'a, S> {
     /// Draws the patches that meet the tile, in order; what is nearer than what was there stays.
     ///
     /// Cost: every lattice point of those patches. Stack: 0.6 KB for patches up to degree 3, 2.3 KB above, 4.8 KB
-    /// where the lattice needs `i128`; rational patches a third more.
+    /// where the lattice needs `i128`; rational patches a third more. [`Fill::Grid`] takes 3.8 KB for bicubic patches, and
+    /// 2 KB more than points for others.
     pub fn draw<P: Paint>(&self, tile: &mut Tile<'_, P::Pixel>, paint: &P) -> Statistics {
         let mut statistics = Statistics::default();
         if self.style.lines() == Some(true) {

@@ -127,7 +127,7 @@ impl Truth {
                     let place = seams.entry(p.map(|c| (c * 1024.0).round() as i64)).or_insert_with(|| (p, Vec::new()));
                     place.1.push(positive != topology.is_inward());
                 }
-            } else if points.iter().any(|p| p.0 != points[0].0) {
+            } else if points.iter().any(|p| (0..3).any(|axis| (p.0[axis] - points[0].0[axis]).abs() > 0.0)) {
                 points.windows(2).for_each(|pair| self.mark_between(pair[0].0, pair[1].0, distance + 0.5));
             }
         }
@@ -174,9 +174,8 @@ impl Truth {
         for y in range(1) {
             for x in range(0) {
                 let (px, py) = (f64::from(x), f64::from(y));
-                let weight = |p: [f64; 3], q: [f64; 3]| {
-                    ((q[0] - p[0]) * (py - p[1]) - (q[1] - p[1]) * (px - p[0])) / area
-                };
+                let weight =
+                    |p: [f64; 3], q: [f64; 3]| ((q[0] - p[0]) * (py - p[1]) - (q[1] - p[1]) * (px - p[0])) / area;
                 let [wa, wb, wc] = [weight(b, c), weight(c, a), weight(a, b)];
                 if !(wa >= -1e-9 && wb >= -1e-9 && wc >= -1e-9) {
                     continue;

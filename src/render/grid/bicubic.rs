@@ -295,9 +295,8 @@ impl Across {
     #[cold]
     #[inline(never)]
     fn limit(&self, [r, s]: [[i16; 3]; 2], (i, n): (i32, i32), is_first: bool) -> [[i16; 3]; 2] {
-        let twist = self.control.map(|[a, b, c, d]| {
-            (n - i) * (n - i) * (b - a) + 2 * i * (n - i) * (c - b) + i * i * (d - c)
-        });
+        let twist =
+            self.control.map(|[a, b, c, d]| (n - i) * (n - i) * (b - a) + 2 * i * (n - i) * (c - b) + i * i * (d - c));
         let from = |start: bool| direction(if start { twist } else { twist.map(|c| -c) });
         match (r == [0; 3], s == [0; 3]) {
             (true, false) => [from(is_first), s],

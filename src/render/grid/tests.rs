@@ -40,7 +40,7 @@ fn general(net: SurfaceNet<'_>, counts: (u32, u32)) -> BTreeMap<(u32, u32), Vert
         let columns = (first, (first + 32).min(counts.0));
         let (form, window) = (&plan.form, DepthWindow::of(WINDOW.0, WINDOW.1));
         let (rows, style, sink) = (&mut rows, Style::Shaded, &mut Keep(&mut all, first));
-        plan.walk(Collector::<true> { rows, sink, style, window, fraction, form, columns });
+        plan.walk(Collector { rows, sink, style, window, fraction, form, columns });
         first = columns.1;
     }
     all

@@ -71,8 +71,8 @@ pub(super) trait RowSink {
     fn row(&mut self, rows: &mut Rows, j: u32, count: usize);
 }
 
-/// Collects rows of vertices on a walk.
-pub(super) struct Collector<'v, const NORMALS: bool> {
+/// Collects rows of vertices on a walk; with tangents in every style, so that one copy of the walks serves all.
+pub(super) struct Collector<'v> {
     pub(super) rows: &'v mut Rows,
     pub(super) sink: &'v mut dyn RowSink,
     pub(super) style: Style,
@@ -83,10 +83,14 @@ pub(super) struct Collector<'v, const NORMALS: bool> {
     pub(super) columns: (u32, u32),
 }
 
-impl<const NORMALS: bool> Collector<'_, NORMALS> {
+impl Collector<'_> {
     /// The level where it does not depend on a normal.
     fn level(&self, depth: u16) -> (u8, Lit) {
-        if NORMALS { (0, Lit::Unknown) } else { (level_of(self.style, self.window, depth), Lit::Both) }
+        if self.style.needs_normals() {
+            (0, Lit::Unknown)
+        } else {
+            (level_of(self.style, self.window, depth), Lit::Both)
+        }
     }
 
     /// Directions of S_r and S_s; of what grows from one that vanishes.
@@ -115,8 +119,8 @@ impl<const NORMALS: bool> Collector<'_, NORMALS> {
     }
 }
 
-impl<const NORMALS: bool> Visit for Collector<'_, NORMALS> {
-    const TANGENTS: bool = NORMALS;
+impl Visit for Collector<'_> {
+    const TANGENTS: bool = true;
 
     #[inline(always)]
     fn point<S: Site>(mut self, at: &S) -> Self {
@@ -133,7 +137,7 @@ impl<const NORMALS: bool> Visit for Collector<'_, NORMALS> {
             depth: with_room(depth),
             level,
             lit,
-            tangents: if NORMALS { self.tangents(at) } else { [[0; 3]; 2] },
+            tangents: self.tangents(at),
         };
         if let Some(slot) = self.rows.0[(j & 1) as usize].get_mut((i - first) as usize) {
             *slot = vertex;
