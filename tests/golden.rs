@@ -76,11 +76,11 @@ fn a_picture_is_written_and_counted() {
 
 #[test]
 fn a_grid_is_four_vertices_or_refused() {
-    let case = |tolerance: f64| json!({"patch": square(), "size": [16, 12], "band": 5, "fill": {"grid": tolerance}});
+    let case = |tolerance: u32| json!({"patch": square(), "size": [16, 12], "band": 5, "fill": {"grid": tolerance}});
     // Facets leave out centres on the right and on the lower border: 7 × 7 pixels.
     let expected = json!({"status": "ok", "points": 4, "pixels": 49, "pieces": 1, "splits": 0, "missed": 0});
-    assert_eq!(answer(&golden("render", &file("grid", &case(1.0).to_string()), &[])), expected);
-    let refused = answer(&golden("render", &file("grid-0", &case(0.0).to_string()), &[]));
+    assert_eq!(answer(&golden("render", &file("grid", &case(1).to_string()), &[])), expected);
+    let refused = answer(&golden("render", &file("grid-0", &case(0).to_string()), &[]));
     assert_eq!(refused["status"], "Tolerance");
 }
 
