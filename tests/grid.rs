@@ -242,6 +242,29 @@ fn the_same_bytes_in_every_band_height_with_and_without_a_list() {
     }
 }
 
+/// A buffer too small loses nothing, and a list may come when bands are gone already.
+#[test]
+fn a_list_in_the_middle_of_a_frame() {
+    let patches = Look::at(VIEWS[2], (320, 240)).see(&teapot());
+    let edges = edges(&patches);
+    let scene = Scene::grid(&patches, &edges, I16F16::ONE, Light::default(), Style::Shaded).unwrap();
+    let whole = in_bands(scene, 240, false);
+    let (mut facets, mut links) = (vec![Facet::EMPTY; 5000], vec![0; 6000]);
+    let paint = |at: Fragment| Some(at.shade ^ at.patch as u8);
+    let mut frame = Frame::new(scene, &paint, None, SCREEN, 11).unwrap();
+    let (mut colour, mut depth) = (vec![None; frame.band_pixels()], vec![0; frame.band_pixels()]);
+    let mut pixels = Vec::new();
+    for _ in 0..7 {
+        pixels.extend_from_slice(frame.next_band(&mut colour, &mut depth).unwrap().unwrap().pixels());
+    }
+    let mut frame = frame.with_facets(&mut facets, &mut links).unwrap();
+    assert!(frame.next_band(&mut colour[1..], &mut depth).is_err());
+    while let Some(band) = frame.next_band(&mut colour, &mut depth).unwrap() {
+        pixels.extend_from_slice(band.pixels());
+    }
+    assert!(pixels == whole);
+}
+
 /// Tiles of any place and size show the same pixels.
 #[test]
 fn tiles_do_not_show() {
@@ -302,12 +325,18 @@ fn what_is_refused() {
         assert_eq!(refused, RenderError::Tolerance { bits });
     }
     assert!(scene.with_fill(Fill::Exact).is_ok());
+    let message = RenderError::Tolerance { bits: -3 }.to_string();
+    assert_eq!(message, "a tolerance of -3/65536 pixel is not positive");
+    let message = RenderError::Segments { index: 4, most: 1024 }.to_string();
+    assert_eq!(message, "patch 4 needs more than 1024 segments in a direction at this tolerance");
     let filled = scene.with_fill(grid(1.0)).unwrap();
     let paint = |at: Fragment| at.shade;
     let frame = || Frame::new(filled, &paint, 0, SCREEN, 16).unwrap();
     let error = frame().with_facets(&mut [Facet::EMPTY; 9], &mut [0; 30]).map(|_| ()).unwrap_err();
     let RenderError::Facets { needed, given: 9, needed_links, given_links: 30 } = error else { panic!("{error:?}") };
     assert_eq!(needed_links, needed + 15);
+    let message = format!("{needed} facets with {needed_links} links do not fit 9 entries and 30 links");
+    assert_eq!(error.to_string(), message);
     let (mut facets, mut links) = (vec![Facet::EMPTY; needed], vec![0; needed_links]);
     assert!(frame().with_facets(&mut facets, &mut links[1..]).is_err());
     assert!(frame().with_facets(&mut facets[1..], &mut links).is_err());

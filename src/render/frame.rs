@@ -76,7 +76,8 @@ pub struct Frame<'a, S, P: Paint> {
     rows: u32,
     next: u32,
     statistics: Statistics,
-    facets: Option<Facets<'a>>,
+    /// The list, and the row that it starts at.
+    facets: Option<(Facets<'a>, u32)>,
 }
 
 impl<'a, S: Surface, P: Paint> Frame<'a, S, P> {
@@ -101,7 +102,7 @@ impl<'a, S: Surface, P: Paint> Frame<'a, S, P> {
         Ok(Self { scene, paint, background, area, rows, next: 0, statistics: Statistics::default(), facets: None })
     }
 
-    /// The same picture, its facets made once instead of anew for each band that they meet: for bands of
+    /// The same picture, the facets of the bands to come made once instead of anew for each band that they meet: for bands of
     /// [`Fill::Grid`](super::Fill::Grid). Scenes that have no facets ignore the list.
     ///
     /// `links` holds one number for each band and each facet. A teapot of 320 × 240 pixels in bands of 16 rows at a
@@ -134,8 +135,10 @@ impl<'a, S: Surface, P: Paint> Frame<'a, S, P> {
     /// # Errors
     /// [`RenderError::Facets`] says how many there must be.
     pub fn with_facets(mut self, facets: &'a mut [Facet], links: &'a mut [u16]) -> Result<Self, RenderError> {
-        if let Some((facets, statistics)) = self.scene.facets(self.area, self.rows, facets, links)? {
-            self.facets = Some(facets);
+        let height = self.area.height - self.next;
+        let left = Area { y: self.area.y.saturating_add_unsigned(self.next), height, ..self.area };
+        if let Some((facets, statistics)) = self.scene.facets(left, self.rows, facets, links)? {
+            self.facets = Some((facets, self.next));
             self.statistics += statistics;
         }
         Ok(self)
@@ -167,8 +170,8 @@ impl<'a, S: Surface, P: Paint> Frame<'a, S, P> {
             let colour = colour.get_mut(..needed).ok_or(error)?;
             let mut tile = Tile::new(area, &mut *colour, depth, self.background)?;
             match &mut self.facets {
-                Some(facets) => {
-                    let band = self.next.checked_div(self.rows).unwrap_or(0) as usize;
+                Some((facets, first)) => {
+                    let band = (self.next - *first).checked_div(self.rows).unwrap_or(0) as usize;
                     let end = area.y.saturating_add_unsigned(area.height);
                     facets.draw(band, end, &mut Filler::new(&mut tile, self.paint));
                 }

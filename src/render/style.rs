@@ -58,6 +58,9 @@ pub enum Fill {
     Exact,
     /// Facets between the exact points of a coarse grid: the fast path. Needs
     /// [`Scene::with_topology`](super::Scene::with_topology).
+    ///
+    /// Segments are counted per edge class, the classes k, k + 64, k + 128, … together: scenes with more than 64 classes
+    /// may get more segments than they need.
     Grid {
         /// How far the surface may be from its facets on the screen, in pixels; positive.
         tolerance: I16F16,
