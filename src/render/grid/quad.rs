@@ -185,14 +185,14 @@ fn planes(quad: &Quad, height: i32) -> [Plane; 2] {
 fn lines(quad: &Quad, width: i32, height: i32) -> [Plane; 2] {
     let along_y = height > width;
     let (from, to) = extremes(if along_y { &quad.y } else { &quad.x });
-    let (from, to, length) = (from & 3, to & 3, width.max(height));
+    let length = width.max(height);
     let line = |v: [i32; 4], bits: i32| {
         let flat = Plane { by_x: 0, by_y: 0, origin: (v[0] + v[1] + v[2] + v[3]) << (bits - 2) };
-        let slope = (i64::from(v[to] - v[from]) << (8 + bits)).checked_div(length.into()).unwrap_or(0);
+        let slope = (i64::from(v[to & 3] - v[from & 3]) << (8 + bits)).checked_div(length.into()).unwrap_or(0);
         match i32::try_from(slope) {
             Ok(slope) if length >= 256 => {
                 let (by_x, by_y) = if along_y { (0, slope) } else { (slope, 0) };
-                Plane { by_x, by_y, origin: v[from] << bits }.through([4 * quad.x[from], 4 * quad.y[from]])
+                Plane { by_x, by_y, origin: v[from & 3] << bits }.through([4 * quad.x[from & 3], 4 * quad.y[from & 3]])
             }
             _ => flat,
         }
