@@ -75,6 +75,16 @@ fn a_picture_is_written_and_counted() {
 }
 
 #[test]
+fn a_grid_is_four_vertices_or_refused() {
+    let case = |tolerance: u32| json!({"patch": square(), "size": [16, 12], "band": 5, "fill": {"grid": tolerance}});
+    // Facets leave out centres on the right and on the lower border: 7 × 7 pixels.
+    let expected = json!({"status": "ok", "points": 4, "pixels": 49, "pieces": 1, "splits": 0, "missed": 0});
+    assert_eq!(answer(&golden("render", &file("grid", &case(1).to_string()), &[])), expected);
+    let refused = answer(&golden("render", &file("grid-0", &case(0).to_string()), &[]));
+    assert_eq!(refused["status"], "Tolerance");
+}
+
+#[test]
 fn views_map_the_model_to_the_screen() {
     let mut case = json!({"patch": square(), "size": [40, 40], "style": "flat"});
     // Seen along z, fitted: a square of 7 units fills half of 40 pixels, 10 ..= 30.
@@ -157,7 +167,9 @@ fn what_is_wrong_exits_with_2_and_names_the_field() {
         ("render", with("size", json!(4)), "size"),
         ("render", with("band", json!(0)), "band"),
         ("render", with("style", json!("cubist")), "style"),
-        ("render", with("fill", json!({"grid": 1})), "fill"),
+        ("render", with("fill", json!({"mesh": 1})), "fill"),
+        ("render", with("fill", json!({"grid": "x"})), "fill.grid"),
+        ("render", with("fill", json!({"grid": 1e9})), "fill.grid"),
         ("render", with("color", json!([1, 2, 256])), "color[2]"),
         ("render", with("background", json!([1, 2])), "background"),
         ("render", with("view", json!({"perspective": 0})), "view.perspective"),

@@ -64,10 +64,35 @@ impl<W: Word, const R: usize> Site for At<'_, W, R> {
         ]
     }
 
+    /// With S_r = 0 or S_s = 0, S_rs is proportional to T·D_rs + T_s·D_r − T_r·D_s − T_rs·D; factors of 29 bits.
+    fn twist(&self) -> [i64; 3] {
+        let (row, weights) = (self.row, self.weights);
+        let along = |d: &[W; R]| weights.along_row(d);
+        let d = [row.d[0], along(&row.d), row.across_d[0], along(&row.across_d)];
+        let t: [[W; 4]; 3] = core::array::from_fn(|axis| {
+            let (t, across) = (&row.t[axis], &row.across_t[axis]);
+            [t[0], along(t), across[0], along(across)]
+        });
+        let (by_d, by_t) = (excess(&d) + 1, excess(t.as_flattened()) + 1);
+        let [d, d_r, d_s, d_rs] = d.map(|d| to_i64(d >> by_d));
+        t.map(|t| {
+            let [t, t_r, t_s, t_rs] = t.map(|t| to_i64(t >> by_t));
+            t * d_rs + t_s * d_r - t_r * d_s - t_rs * d
+        })
+    }
+
     fn below(&self, axis: usize, fraction: &Fraction) -> u32 {
         // value + 1/2 = x + (D/2 − T)/D.
         let d = self.row.d[0];
         fraction.divide((d >> 1).wrapping_minus(self.row.t[axis][0]), d)
+    }
+
+    fn floor(&self, axis: usize, fraction: &Fraction) -> i32 {
+        // value = x − T/D with T in (−D/2, D/2].
+        let (d, t) = (self.row.d[0], self.row.t[axis][0]);
+        let below = t > W::ZERO;
+        let e = if below { d.wrapping_minus(t) } else { W::ZERO.wrapping_minus(t) };
+        ((self.row.x[axis] - i32::from(below)) << fraction.bits) + fraction.divide(e, d) as i32
     }
 }
 

@@ -20,8 +20,16 @@ pub(crate) trait Site {
     /// [`Visit::TANGENTS`].
     fn tangents(&self) -> [[Self::Word; 3]; 2];
 
+    /// The mixed derivative, each component exact up to one truncation and a positive factor, where one of the tangents
+    /// vanishes: next to a collapsed side it is what that tangent grows from.
+    fn twist(&self) -> [i64; 3];
+
     /// The bits below the rounded coordinate plus 1/2: about 2^bits times the fraction, below 2^bits.
     fn below(&self, axis: usize, fraction: &Fraction) -> u32;
+
+    /// ⌊2^bits·value⌋, exact: equal values give equal results, whatever lattices they belong to. Polynomial lattices
+    /// are carried as residuals then.
+    fn floor(&self, axis: usize, fraction: &Fraction) -> i32;
 }
 
 /// What happens at the points of a walk.
@@ -70,6 +78,15 @@ impl Fraction {
         ((high as u32) << self.up).wrapping_mul(self.factor) >> 16
     }
 
+    /// ⌊e·2^bits/N⌋ for the constant denominator N with 2N < 2^w, exact: [`read`](Self::read) and one correction. What
+    /// is left over lies in 0 ..= 2N − 1, so it is right modulo 2^w.
+    #[inline(always)]
+    pub(crate) fn exact<W: Word>(&self, e: W, scale: W) -> u32 {
+        let near = self.read(e);
+        let rest = (e << self.bits as usize).wrapping_minus(scale.wrapping_mul_i64(near.into()));
+        near + u32::from(!rest.below(scale))
+    }
+
     /// ⌊e·2^bits/d⌋ for 0 ≤ e < d < 2^(w−1), by restoring division: for denominators that change from point to point.
     #[inline(always)]
     pub(crate) fn divide<W: Word>(&self, e: W, d: W) -> u32 {
@@ -101,6 +118,7 @@ mod tests {
                     let ours = fraction.read(e as i64);
                     assert!(ours <= exact && ours + off > exact && ours >= last, "{e}/{scale}: {ours} for {exact}");
                     assert_eq!(fraction.divide(e as i64, scale as i64), exact);
+                    assert_eq!(fraction.exact(e as i64, scale as i64), exact);
                     last = ours;
                 }
             }

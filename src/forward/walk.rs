@@ -27,6 +27,7 @@ struct At<'a, W, const R: usize> {
     point: [i32; 3],
     row: &'a Row<W, R>,
     weights: &'a Weights,
+    scale: W,
 }
 
 impl<W: Word, const R: usize> Site for At<'_, W, R> {
@@ -53,9 +54,22 @@ impl<W: Word, const R: usize> Site for At<'_, W, R> {
         [core::array::from_fn(|axis| self.weights.along_row(&self.row.d[axis])), self.row.v.map(|v| v[0])]
     }
 
+    fn twist(&self) -> [i64; 3] {
+        self.weights.along_rows(&self.row.v)
+    }
+
     #[inline(always)]
     fn below(&self, axis: usize, fraction: &Fraction) -> u32 {
         fraction.read(self.row.e[axis])
+    }
+
+    #[inline(always)]
+    fn floor(&self, axis: usize, fraction: &Fraction) -> i32 {
+        // value = x + (e − ⌊N/2⌋)/N.
+        let e = self.row.e[axis].wrapping_minus(self.scale >> 1);
+        let (x, e) =
+            if e < W::ZERO { (self.point[axis] - 1, e.wrapping_plus(self.scale)) } else { (self.point[axis], e) };
+        (x << fraction.bits) + fraction.exact(e, self.scale) as i32
     }
 }
 
@@ -63,6 +77,7 @@ impl<W: Word, const R: usize> Site for At<'_, W, R> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Walker<K: Kernel, const R: usize> {
     kernel: K,
+    scale: K::Word,
     table: [Table<K::Word, R>; 3],
     /// (x, e) at the start of the row, per axis.
     start: ([i32; 3], [K::Word; 3]),
@@ -88,6 +103,7 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
         let zero = K::Word::ZERO;
         Self {
             kernel,
+            scale: zero,
             table: [[[zero; R]; R]; 3],
             start: ([0; 3], [zero; 3]),
             row: Row { x: [0; 3], e: [zero; 3], d: [[zero; R]; 3], v: [[zero; R]; 3] },
@@ -106,6 +122,7 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
         for (axis, table) in self.table.iter_mut().enumerate() {
             difference_table(table, form, &|a, b| form.bits(axis, a, b) >> drop);
         }
+        self.scale = K::Word::truncate(budget.scale as i128);
         self.weights = Weights::of(form.degrees);
         self.last_in_row = form.last_in_row(0);
         self.last_row = form.last_row();
@@ -203,7 +220,7 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
         let row = &mut self.row;
         loop {
             let point = core::array::from_fn(|axis| self.kernel.read(row.x[axis], row.e[axis]));
-            visitor = visitor.point(&At { i, j, point, row, weights: &self.weights });
+            visitor = visitor.point(&At { i, j, point, row, weights: &self.weights, scale: self.scale });
             if i == self.last_in_row {
                 return visitor;
             }
@@ -231,7 +248,14 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
                     lanes.next(&mut chunk);
                     let count = (self.last_in_row - i + 1).min(CHUNK as u32);
                     for (i, point) in (i..).zip(chunk.points(count)) {
-                        visitor = visitor.point(&At { i, j, point, row: &self.row, weights: &self.weights });
+                        visitor = visitor.point(&At {
+                            i,
+                            j,
+                            point,
+                            row: &self.row,
+                            weights: &self.weights,
+                            scale: self.scale,
+                        });
                     }
                     i += count;
                 }

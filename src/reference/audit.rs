@@ -2,8 +2,10 @@
 
 use super::{Coverage, fine_mesh};
 use crate::forward::Steps;
+use crate::num::I16F16;
 use crate::patch::Surface;
 use crate::render::{Area, Light, RenderError, Scene, Style, Tile};
+use crate::subdivide::{PatchTopology, topology};
 use std::vec;
 use std::vec::Vec;
 
@@ -60,4 +62,39 @@ impl Audit {
         self.missed.extend(truth.iter().filter(|(x, y)| !tile.covers(*x, *y)).map(|(x, y)| (index, x, y)));
         Ok(())
     }
+
+    /// The same for facets at this tolerance, each patch with a grid of its own. Facets promise nothing next to borders
+    /// and silhouettes: of what is not hit, only centres count that are farther from every centre outside the patch than
+    /// the tolerance and a pixel.
+    ///
+    /// # Errors
+    /// What [`Scene::grid`] and [`Tile::new`] report.
+    pub fn of_grid<S: Surface>(patches: &[S], tolerance: I16F16, area: Area) -> Result<Self, RenderError> {
+        let mut audit = Self::default();
+        for (index, patch) in patches.iter().enumerate() {
+            let (mut colour, mut depth) = (vec![(); area.pixels()], vec![0; area.pixels()]);
+            let mut tile = Tile::new(area, &mut colour, &mut depth, ())?;
+            let (patch, mut edges) = (core::slice::from_ref(patch), [PatchTopology::default()]);
+            // One patch has room; if it had one side only, it would have no classes but its own edges.
+            let _ = topology(patch, &mut edges);
+            Scene::grid(patch, &edges, tolerance, Light::default(), Style::Flat)?.draw(&mut tile, &|_| ());
+            let net = patch[0].surface();
+            let steps = Steps::hole_free(net);
+            let mut truth = Coverage::new(area.x, area.y, area.width, area.height);
+            truth.add(net, fine_mesh((steps.r(), steps.s())));
+            audit.pixels += (0..area.pixels()).filter(|i| tile.is_covered(*i)).count();
+            audit.covered += truth.count();
+            let reach = tolerance.to_num::<f64>() + 1.0;
+            let missed = truth.iter().filter(|(x, y)| !tile.covers(*x, *y) && is_inside(&truth, (*x, *y), reach));
+            audit.missed.extend(missed.map(|(x, y)| (index, x, y)));
+        }
+        Ok(audit)
+    }
+}
+
+/// Whether every centre within `reach` pixels is in the set.
+fn is_inside(set: &Coverage, (x, y): (i32, i32), reach: f64) -> bool {
+    let far = reach as i32;
+    (-far..=far)
+        .all(|dy| (-far..=far).all(|dx| f64::from(dx).hypot(f64::from(dy)) > reach || set.contains(x + dx, y + dy)))
 }

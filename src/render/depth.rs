@@ -41,6 +41,13 @@ impl DepthWindow {
         Self { bits: self.bits + halvings, offset: self.offset + more, ..self }
     }
 
+    /// The depth of ⌊256·z⌋.
+    #[inline(always)]
+    pub(super) fn depth_of_256(self, z: i32) -> u16 {
+        let depth = ((z + 128) >> (8 - self.bits)).wrapping_sub(self.offset).max(0) >> self.drop;
+        depth.min(Self::LARGEST.into()) as u16
+    }
+
     /// The lead of lines over surfaces.
     pub(super) fn bias(self) -> u16 {
         ((Lines::BIAS << self.bits) >> self.drop) as u16

@@ -113,6 +113,20 @@ pub(super) fn normal<W: Word>([u, v]: [[W; 3]; 2]) -> Option<[i32; 3]> {
     (cross[0] | cross[1] | cross[2] != 0).then(|| truncate(cross, 15))
 }
 
+/// The normal U × V as it is, with components of at most 2^15, from tangents of at most 14 bits; `None` where it
+/// vanishes.
+pub(super) fn normal_of([u, v]: [[i16; 3]; 2]) -> Option<[i32; 3]> {
+    let [a, b] = [u, v].map(|t| t.map(i32::from));
+    // Two products of 14-bit numbers stay below 2^29.
+    let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    (cross != [0; 3]).then(|| truncate(cross, 15))
+}
+
+/// A tangent in 14 bits and a sign.
+pub(super) fn short<W: Word>(tangent: [W; 3]) -> [i16; 3] {
+    truncate(tangent, 14).map(|c| c as i16)
+}
+
 /// The vector with its components shifted right by one common amount: from −2^bits to 2^bits − 1.
 fn truncate<W: Word>(v: [W; 3], bits: u32) -> [i32; 3] {
     let magnitude = v.iter().fold(W::ZERO, |all, c| all | (*c ^ (*c >> (<W as Word>::BITS - 1) as usize)));

@@ -122,6 +122,13 @@ fn meets(form: &Form<'_>, j: u32, band: (i32, i32)) -> bool {
 #[cold]
 #[inline(never)]
 pub(super) fn normal_inside(net: SurfaceNet<'_>, form: &Form<'_>, i: u32, j: u32) -> Option<[i32; 3]> {
+    normal(tangents_inside(net, form, i, j)?)
+}
+
+/// The tangents there.
+#[cold]
+#[inline(never)]
+pub(super) fn tangents_inside(net: SurfaceNet<'_>, form: &Form<'_>, i: u32, j: u32) -> Option<[[i64; 3]; 2]> {
     let half = u64::from(form.centred);
     let part = |index: u32, steps: u32, range: u64| {
         let doubled = (2 * u64::from(index) + half) * range;
@@ -148,7 +155,7 @@ pub(super) fn normal_inside(net: SurfaceNet<'_>, form: &Form<'_>, i: u32, j: u32
             _ => return None,
         }
     };
-    normal(tangents.map(|t| t.to_array().map(|c| c.to_bits())))
+    Some(tangents.map(|t| t.to_array().map(|c| c.to_bits())))
 }
 
 /// Barycentric coordinates (u, v, w) from those of a turned triangle.

@@ -49,9 +49,9 @@ impl<'a> Plan<'a> {
     }
 
     /// Walks the lattice with any visitor, which may want tangents.
-    #[cfg(all(test, feature = "std"))]
     pub(super) fn walk<V: Visit>(&self, visitor: V) {
         match (self.width, self.form.weights().is_some()) {
+            // For pieces only.
             (Width::Cubic32, _) => {}
             (Width::Cubic64, false) => run::<_, _, 4>(Residual::<i64>::of(&self.budget), self, visitor),
             (Width::Quintic64, false) => run::<_, _, 6>(Residual::<i64>::of(&self.budget), self, visitor),

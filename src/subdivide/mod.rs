@@ -45,10 +45,12 @@ mod flat;
 mod nets;
 mod rounded;
 mod stencil;
+mod topology;
 
 pub use bounds::{MAX_DEPTH, depth_by_edges};
-pub use error::SubdivideError;
+pub use error::{Buffer, SubdivideError};
 pub use exact::{Direction, Half, Quarter, halve_curve, halve_tensor, quarter_triangle};
 pub use flat::Tolerance;
+pub use topology::{PatchTopology, topology};
 
 pub(crate) use rounded::{Cut, Source, part_net};
