@@ -9,8 +9,12 @@
 //! Rational nets are subdivided in homogeneous coordinates, exactly, before points and weights are rounded.
 
 mod edge;
+mod error;
 mod exact;
 mod nets;
 mod rounded;
+mod topology;
 
+pub use error::{Buffer, SubdivideError};
 pub use exact::{Direction, Half, Quarter, halve_curve, halve_tensor, quarter_triangle};
+pub use topology::{PatchTopology, topology};

@@ -1,0 +1,62 @@
+//! What subdivision refuses.
+
+/// Why patches cannot be subdivided, joined or tessellated as asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum SubdivideError {
+    /// A buffer of the caller is too small.
+    Buffer {
+        /// Which one.
+        buffer: Buffer,
+        /// How many entries it must have.
+        needed: usize,
+        /// How many it has.
+        given: usize,
+    },
+    /// More patches than indices can name.
+    TooManyPatches {
+        /// How many were given.
+        given: usize,
+        /// The most that can be.
+        most: usize,
+    },
+    /// A part of the surface has one side only: its patches cannot be oriented consistently.
+    NotOrientable {
+        /// A patch at which the contradiction shows.
+        patch: usize,
+    },
+}
+
+/// A buffer that a caller lends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Buffer {
+    /// One [`PatchTopology`](super::PatchTopology) per patch.
+    Topology,
+}
+
+impl core::fmt::Display for Buffer {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Topology => "topology",
+        })
+    }
+}
+
+impl core::fmt::Display for SubdivideError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Buffer { buffer, needed, given } => {
+                write!(f, "the {buffer} buffer has room for {given} entries, {needed} are needed")
+            }
+            Self::TooManyPatches { given, most } => write!(f, "{given} patches are more than {most}"),
+            Self::NotOrientable { patch } => {
+                write!(f, "the surface has one side only: patch {patch} cannot be oriented like its neighbours")
+            }
+        }
+    }
+}
+
+impl core::error::Error for SubdivideError {}
