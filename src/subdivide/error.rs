@@ -5,6 +5,21 @@
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum SubdivideError {
+    /// A tolerance that is not positive.
+    Tolerance {
+        /// The tolerance in units of 2^-16.
+        bits: i32,
+    },
+    /// A patch whose control points are all equal.
+    Point {
+        /// The index of the patch.
+        patch: usize,
+    },
+    /// A patch bends too much: cells of 2^-16 of it are not flat to the tolerance.
+    TooDeep {
+        /// The index of the patch.
+        patch: usize,
+    },
     /// A buffer of the caller is too small.
     Buffer {
         /// Which one.
@@ -48,6 +63,11 @@ impl core::fmt::Display for Buffer {
 impl core::fmt::Display for SubdivideError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
+            Self::Tolerance { bits } => write!(f, "tolerance {bits} / 65536 is not positive"),
+            Self::Point { patch } => write!(f, "all control points of patch {patch} are equal"),
+            Self::TooDeep { patch } => {
+                write!(f, "the tolerance is too small for patch {patch}: parts of 2^-16 of it are not flat to it")
+            }
             Self::Buffer { buffer, needed, given } => {
                 write!(f, "the {buffer} buffer has room for {given} entries, {needed} are needed")
             }

@@ -13,8 +13,10 @@ mod error;
 mod exact;
 mod nets;
 mod rounded;
+mod tessellate;
 mod topology;
 
 pub use error::{Buffer, SubdivideError};
 pub use exact::{Direction, Half, Quarter, halve_curve, halve_tensor, quarter_triangle};
+pub use tessellate::{Tessellation, Vertex, tessellate};
 pub use topology::{PatchTopology, topology};

@@ -1,0 +1,277 @@
+//! Watertight tessellation.
+
+mod cell;
+mod eval;
+mod refine;
+mod zip;
+
+use super::edge::{edge_count, edge_degree, edge_index, is_collapsed, net_point, same_curve};
+use super::{Buffer, PatchTopology, SubdivideError};
+use crate::geometry::Point3;
+use crate::num::I16F16;
+use crate::patch::{Parameter, Surface, SurfaceNet};
+use cell::{Cell, Fine};
+use eval::{dyadic, eval};
+use refine::{MOST_LEAST, Reach, Tree};
+use zip::{Chain, Leaf, Spot, Zip};
+
+/// A corner of a triangle of a tessellation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Vertex {
+    /// The exact point of the patch at the parameters, rounded once, half up.
+    pub point: Point3,
+    /// The index of the patch.
+    pub patch: usize,
+    /// (r, s) of a tensor-product patch, (u, v) of a triangle.
+    pub parameters: [Parameter; 2],
+}
+
+/// The triangles.
+#[derive(Debug)]
+pub struct Tessellation<'a, S> {
+    patches: &'a [S],
+    topology: &'a [PatchTopology],
+    tolerance: i64,
+    leaf: Option<Leaf>,
+    zips: [Option<Zip>; 2],
+}
+
+impl<S> Clone for Tessellation<'_, S> {
+    fn clone(&self) -> Self {
+        Self { ..*self }
+    }
+}
+
+/// The tessellation.
+///
+/// # Errors
+/// todo
+pub fn tessellate<'a, S: Surface>(
+    patches: &'a [S],
+    topology: &'a [PatchTopology],
+    tolerance: I16F16,
+) -> Result<Tessellation<'a, S>, SubdivideError> {
+    if tolerance <= I16F16::ZERO {
+        return Err(SubdivideError::Tolerance { bits: tolerance.to_bits() });
+    }
+    if topology.len() < patches.len() {
+        let (needed, given) = (patches.len(), topology.len());
+        return Err(SubdivideError::Buffer { buffer: Buffer::Topology, needed, given });
+    }
+    for (patch, surface) in patches.iter().enumerate() {
+        let points = surface.surface();
+        let points = points.points();
+        if points.iter().all(|p| Some(p) == points.first()) {
+            return Err(SubdivideError::Point { patch });
+        }
+    }
+    let mut mesh =
+        Tessellation { patches, topology, tolerance: tolerance.to_bits().into(), leaf: None, zips: [None; 2] };
+    // Every cell is visited once, so that nothing later can be too deep.
+    for patch in 0..patches.len() {
+        let Some(tree) = mesh.tree(patch) else { continue };
+        let mut cell = Some(tree.domain.first());
+        while let Some(from) = cell {
+            let leaf = mesh.leaf_from(patch, &tree, from).ok_or(SubdivideError::TooDeep { patch })?;
+            cell = tree.domain.next(leaf.cell);
+        }
+    }
+    mesh.leaf = mesh.first_leaf(0);
+    mesh.start();
+    Ok(mesh)
+}
+
+impl<'a, S: Surface> Tessellation<'a, S> {
+    fn net(&self, patch: usize) -> Option<SurfaceNet<'a>> {
+        self.patches.get(patch).map(Surface::surface)
+    }
+
+    fn tree(&self, patch: usize) -> Option<Tree<'a>> {
+        self.net(patch).map(|net| Tree::new(net, self.tolerance))
+    }
+
+    /// The leaf that holds the first part of a cell.
+    fn leaf_from(&self, patch: usize, tree: &Tree<'a>, from: Cell) -> Option<Leaf> {
+        let domain = tree.domain;
+        let target = domain.descend(from, domain.deepest());
+        match tree.reach(target, || self.least(patch)) {
+            Reach::Leaf(level) => Some(Leaf { patch, domain, cell: domain.ancestor(target, level) }),
+            _ => None,
+        }
+    }
+
+    fn first_leaf(&self, patch: usize) -> Option<Leaf> {
+        let tree = self.tree(patch)?;
+        self.leaf_from(patch, &tree, tree.domain.first())
+    }
+
+    fn next_leaf(&self, leaf: &Leaf) -> Option<Leaf> {
+        match leaf.domain.next(leaf.cell) {
+            Some(from) => self.leaf_from(leaf.patch, &self.tree(leaf.patch)?, from),
+            None => self.first_leaf(leaf.patch + 1),
+        }
+    }
+
+    /// Whether a cell exists and is split.
+    fn is_split(&self, patch: usize, cell: Cell) -> bool {
+        let Some(tree) = self.tree(patch) else { return false };
+        cell.level < tree.domain.deepest() && tree.reach(cell, || self.least(patch)) == Reach::Split
+    }
+
+    /// Whether a cell beyond a segment of a leaf's side has a vertex in the middle of it: segment `index` of 2^down, as
+    /// the side runs.
+    fn is_divided(&self, leaf: &Leaf, side: usize, (down, index): (u8, u32)) -> bool {
+        let domain = leaf.domain;
+        let ours = domain.along(leaf.cell, side, down, index);
+        match domain.across(ours, side) {
+            Some(other) => self.is_split(leaf.patch, other),
+            None => {
+                let exponent = domain.exponent(ours.level, side);
+                self.is_divided_beyond((leaf.patch, side), exponent, domain.place(ours, side))
+            }
+        }
+    }
+
+    /// The same for segment `index` of 2^exponent of an edge, in all other patches on the same curve.
+    fn is_divided_beyond(&self, (patch, edge): (usize, usize), exponent: u32, index: u32) -> bool {
+        let Some(net) = self.net(patch) else { return false };
+        if is_collapsed(&net, edge) {
+            return false;
+        }
+        (0..self.patches.len()).any(|beyond| {
+            let Some(other) = self.net(beyond) else { return false };
+            (0..edge_count(&other)).any(|across| {
+                let Some(reversed) = same_curve((&net, edge), (&other, across)) else { return false };
+                if (beyond, across) == (patch, edge) {
+                    return false;
+                }
+                let index = if reversed { (1 << exponent) - 1 - index } else { index };
+                let domain = Tree::new(other, self.tolerance).domain;
+                let Some(level) = exponent.checked_sub(domain.exponent(0, across)) else { return true };
+                let level = level as u8;
+                level < domain.deepest() && self.is_split(beyond, domain.on_border(across, level, index))
+            })
+        })
+    }
+
+    /// The level that a patch's leaves have at least, so that no two mesh edges have the same ends.
+    fn least(&self, patch: usize) -> u8 {
+        let Some(net) = self.net(patch) else { return 0 };
+        let closed = |edge| {
+            let (a, b) = edge_ends(&net, edge);
+            a == b && !is_collapsed(&net, edge)
+        };
+        if (0..edge_count(&net)).any(closed) {
+            return MOST_LEAST;
+        }
+        let others = (0..self.patches.len()).filter(|other| *other != patch);
+        u8::from(others.filter_map(|other| self.net(other)).any(|other| collide(&net, &other)))
+    }
+
+    /// The exact point.
+    fn spot(&self, patch: usize, fine: Fine) -> Spot {
+        let point = self.net(patch).map_or(Point3::ORIGIN, |net| eval(&net, fine));
+        Spot { fine, point }
+    }
+
+    /// The zips of the current leaf.
+    fn start(&mut self) {
+        let Some(leaf) = self.leaf else { return };
+        let chain = |side, from| Chain::new(self, &leaf, side, from);
+        let zip = |left, right| Some(Zip::new(self, &leaf, left, right));
+        if leaf.domain.triangle {
+            let sides = [0, 1, 2].map(|side| chain(side, leaf.ends(side).0));
+            // The side that closes the zip.
+            let closing = sides.iter().position(|side| !side.is_divided());
+            if let Some(apex) = closing {
+                let (left, right) = (chain((apex + 2) % 3, apex), chain((apex + 1) % 3, apex));
+                self.zips = [zip(left, right), None];
+            } else {
+                let first = zip(chain(0, 1).half(), chain(2, 1));
+                let second = zip(chain(1, 2), chain(0, 2).half());
+                self.zips = [first, second];
+            }
+            return;
+        }
+        let corner = |c| self.spot(leaf.patch, leaf.domain.corner(leaf.cell, c)).point;
+        let long = squared(corner(0), corner(3)) > squared(corner(1), corner(2));
+        self.zips = if long {
+            [zip(chain(2, 0), chain(0, 0)), zip(chain(3, 3), chain(1, 3))]
+        } else {
+            [zip(chain(1, 1), chain(2, 1)), zip(chain(0, 2), chain(3, 2))]
+        };
+    }
+
+    fn vertex(&self, leaf: &Leaf, spot: Spot) -> Vertex {
+        let parameters = [spot.fine[0], spot.fine[1]].map(dyadic);
+        Vertex { point: spot.point, patch: leaf.patch, parameters }
+    }
+}
+
+impl<S: Surface> Iterator for Tessellation<'_, S> {
+    type Item = [Vertex; 3];
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            let leaf = self.leaf?;
+            let [first, second] = &mut self.zips.clone();
+            let found = match (first.as_mut().and_then(|zip| zip.next(self, &leaf)), ()) {
+                (Some(found), ()) => Some(found),
+                (None, ()) => {
+                    *first = None;
+                    second.as_mut().and_then(|zip| zip.next(self, &leaf))
+                }
+            };
+            self.zips = [*first, *second];
+            let Some([a, b, c]) = found else {
+                self.leaf = self.next_leaf(&leaf);
+                self.start();
+                continue;
+            };
+            if a.point == b.point || b.point == c.point || c.point == a.point {
+                continue;
+            }
+            let inward = self.topology.get(leaf.patch).is_some_and(PatchTopology::is_inward);
+            let order = if inward { [a, c, b] } else { [a, b, c] };
+            return Some(order.map(|spot| self.vertex(&leaf, spot)));
+        }
+    }
+}
+
+impl<S: Surface> core::iter::FusedIterator for Tessellation<'_, S> {}
+
+fn edge_ends(net: &SurfaceNet<'_>, edge: usize) -> (Point3, Point3) {
+    let at = |k| net_point(net.points(), edge_index(net, edge, k));
+    (at(0), at(edge_degree(net, edge)))
+}
+
+/// Whether the meshes of two patches that are one cell each could have different edges with the same ends.
+fn collide(net: &SurfaceNet<'_>, other: &SurfaceNet<'_>) -> bool {
+    let (ours, theirs) = (corners(net), corners(other));
+    let same_side = |p: Point3, q: Point3| {
+        let has = |(a, b): (Point3, Point3)| (a, b) == (p, q) || (b, a) == (p, q);
+        (0..edge_count(net)).filter(|edge| has(edge_ends(net, *edge))).all(|edge| {
+            let mut twins = (0..edge_count(other)).filter(|across| has(edge_ends(other, *across)));
+            twins.all(|across| same_curve((net, edge), (other, across)).is_some())
+        }) && (0..edge_count(net)).any(|edge| has(edge_ends(net, edge)))
+            && (0..edge_count(other)).any(|edge| has(edge_ends(other, edge)))
+    };
+    let pairs = [(0, 1), (0, 2), (1, 2), (0, 3), (1, 3), (2, 3)];
+    pairs.into_iter().any(|(i, j)| {
+        let (p, q) = (ours[i], ours[j]);
+        p != q && theirs.contains(&p) && theirs.contains(&q) && !same_side(p, q)
+    })
+}
+
+/// The corners; the last of a triangle twice.
+fn corners(net: &SurfaceNet<'_>) -> [Point3; 4] {
+    let (a, b) =
+        if net.is_triangle() { (edge_ends(net, 2), edge_ends(net, 1)) } else { (edge_ends(net, 2), edge_ends(net, 3)) };
+    if net.is_triangle() { [a.0, a.1, b.1, b.1] } else { [a.0, a.1, b.0, b.1] }
+}
+
+fn squared(a: Point3, b: Point3) -> i128 {
+    let (a, b) = (a.to_array(), b.to_array());
+    a.into_iter().zip(b).map(|(a, b)| i128::from(i64::from(a.to_bits()) - i64::from(b.to_bits())).pow(2)).sum()
+}

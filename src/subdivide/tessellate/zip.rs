@@ -1,0 +1,138 @@
+//! The chain of vertices along a side of a leaf, and the triangles between two chains.
+
+use super::Tessellation;
+use super::cell::{Cell, FINE, Fine};
+use crate::geometry::Point3;
+use crate::patch::Surface;
+
+/// A vertex on the way: its parameters and its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Spot {
+    pub(super) fine: Fine,
+    pub(super) point: Point3,
+}
+
+/// The vertices on a side of a leaf, from one of its ends on: where any cell that touches the side has corners.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chain {
+    side: usize,
+    /// Whether it runs as the side does.
+    forward: bool,
+    start: Fine,
+    step: Fine,
+    /// Steps of the fine grid from the start.
+    at: u32,
+    end: u32,
+    /// Length of the side.
+    full: u32,
+    /// Whether there are vertices between its ends.
+    divided: bool,
+}
+
+impl Chain {
+    /// The whole side from one corner to another.
+    pub(super) fn new<S: Surface>(mesh: &Tessellation<'_, S>, leaf: &Leaf, side: usize, from: usize) -> Self {
+        let (first, last) = leaf.ends(side);
+        let forward = first == from;
+        let to = if forward { last } else { first };
+        let domain = leaf.domain;
+        let (start, target) = (domain.corner(leaf.cell, from), domain.corner(leaf.cell, to));
+        let step = [0, 1, 2].map(|c: usize| (target[c] - start[c]).signum());
+        let full = 1 << (FINE - domain.exponent(leaf.cell.level, side));
+        let divided = mesh.is_divided(leaf, side, (0, 0));
+        Self { side, forward, start, step, at: 0, end: full, full, divided }
+    }
+
+    /// Only the first half of a divided side.
+    pub(super) fn half(self) -> Self {
+        Self { end: self.full / 2, ..self }
+    }
+
+    pub(super) fn is_divided(&self) -> bool {
+        self.divided
+    }
+
+    pub(super) fn is_done(&self) -> bool {
+        self.at >= self.end
+    }
+
+    /// Moves to the next vertex.
+    fn advance<S: Surface>(&mut self, mesh: &Tessellation<'_, S>, leaf: &Leaf) -> Fine {
+        let mut size = if self.at == 0 { self.full } else { 1 << self.at.trailing_zeros() };
+        let mut down = (self.full / size).trailing_zeros();
+        while self.divided && size > 1 {
+            let low = if self.forward { self.at } else { self.full - self.at - size };
+            if !mesh.is_divided(leaf, self.side, (down as u8, low >> size.trailing_zeros())) {
+                break;
+            }
+            size /= 2;
+            down += 1;
+        }
+        self.at += size;
+        [0, 1, 2].map(|c: usize| self.start[c] + self.step[c] * self.at as i32)
+    }
+
+    /// The place of the next vertex in sixteenths of the side's length... compared between sides of one leaf.
+    fn progress(&self) -> u32 {
+        self.at << (FINE - self.full.trailing_zeros())
+    }
+}
+
+/// A leaf of a patch's quadtree.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Leaf {
+    pub(super) patch: usize,
+    pub(super) domain: super::cell::Domain,
+    pub(super) cell: Cell,
+}
+
+impl Leaf {
+    /// The corners that a side runs from and to.
+    pub(super) fn ends(&self, side: usize) -> (usize, usize) {
+        match (self.domain.triangle, side) {
+            (true, side) => super::cell::ends(side),
+            (false, 0) => (0, 2),
+            (false, 1) => (1, 3),
+            (false, 2) => (0, 1),
+            (false, _) => (2, 3),
+        }
+    }
+}
+
+/// The triangles between two chains that leave one corner; the side between their ends has no vertices inside.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Zip {
+    left: (Chain, Spot),
+    right: (Chain, Spot),
+}
+
+impl Zip {
+    /// `left` turns counter-clockwise into `right`.
+    pub(super) fn new<S: Surface>(mesh: &Tessellation<'_, S>, leaf: &Leaf, left: Chain, right: Chain) -> Self {
+        let apex = mesh.spot(leaf.patch, left.start);
+        Self { left: (left, apex), right: (right, apex) }
+    }
+
+    /// The next triangle, counter-clockwise in the parameters.
+    pub(super) fn next<S: Surface>(&mut self, mesh: &Tessellation<'_, S>, leaf: &Leaf) -> Option<[Spot; 3]> {
+        let ((left, g), (right, h)) = (&mut self.left, &mut self.right);
+        let at = |fine| mesh.spot(leaf.patch, fine);
+        if left.at == 0 {
+            let apex = *g;
+            *g = at(left.advance(mesh, leaf));
+            *h = at(right.advance(mesh, leaf));
+            return Some([apex, *g, *h]);
+        }
+        if !left.is_done() && (right.is_done() || left.progress() <= right.progress()) {
+            let before = *g;
+            *g = at(left.advance(mesh, leaf));
+            return Some([before, *g, *h]);
+        }
+        if !right.is_done() {
+            let before = *h;
+            *h = at(right.advance(mesh, leaf));
+            return Some([*g, *h, before]);
+        }
+        None
+    }
+}
