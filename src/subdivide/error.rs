@@ -15,10 +15,12 @@ pub enum SubdivideError {
         /// The index of the patch.
         patch: usize,
     },
-    /// A patch bends too much: cells of 2^-16 of it are not flat to the tolerance.
-    TooDeep {
+    /// A patch that bends too much for the tolerance.
+    PatchTooDeep {
         /// The index of the patch.
         patch: usize,
+        /// How many halvings are not enough.
+        limit: u32,
     },
     /// A buffer of the caller is too small.
     Buffer {
@@ -50,12 +52,21 @@ pub enum SubdivideError {
 pub enum Buffer {
     /// One [`PatchTopology`](super::PatchTopology) per patch.
     Topology,
+    /// The vertices of a mesh.
+    Vertices,
+    /// The triangles of a mesh.
+    Triangles,
+    /// The index of vertices by place.
+    Index,
 }
 
 impl core::fmt::Display for Buffer {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
             Self::Topology => "topology",
+            Self::Vertices => "vertex",
+            Self::Triangles => "triangle",
+            Self::Index => "index",
         })
     }
 }
@@ -63,10 +74,10 @@ impl core::fmt::Display for Buffer {
 impl core::fmt::Display for SubdivideError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::Tolerance { bits } => write!(f, "tolerance {bits} / 65536 is not positive"),
+            Self::Tolerance { bits } => write!(f, "the tolerance is not positive: {bits} / 65536"),
             Self::Point { patch } => write!(f, "all control points of patch {patch} are equal"),
-            Self::TooDeep { patch } => {
-                write!(f, "the tolerance is too small for patch {patch}: parts of 2^-16 of it are not flat to it")
+            Self::PatchTooDeep { patch, limit } => {
+                write!(f, "parts of patch {patch} are not flat to the tolerance after {limit} halvings")
             }
             Self::Buffer { buffer, needed, given } => {
                 write!(f, "the {buffer} buffer has room for {given} entries, {needed} are needed")

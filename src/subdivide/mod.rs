@@ -18,5 +18,5 @@ mod topology;
 
 pub use error::{Buffer, SubdivideError};
 pub use exact::{Direction, Half, Quarter, halve_curve, halve_tensor, quarter_triangle};
-pub use tessellate::{Tessellation, Vertex, tessellate};
+pub use tessellate::{Mesh, MeshBuffers, MeshSize, MeshVertex, Tessellation, Vertex, tessellate};
 pub use topology::{PatchTopology, topology};

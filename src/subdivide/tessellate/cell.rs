@@ -114,6 +114,13 @@ impl Domain {
         Cell { level: cell.level - up, at: cell.at.map(|c| c >> up) }
     }
 
+    /// How many ancestors a cell shares with another: the levels 0 .. that of those that hold both.
+    pub(super) fn shared(self, cell: Cell, other: Cell) -> u8 {
+        (0..cell.level.min(other.level))
+            .find(|level| self.ancestor(cell, *level) != self.ancestor(other, *level))
+            .unwrap_or(cell.level.min(other.level))
+    }
+
     /// The cell that follows all of a cell's descendants in the order of the walk; `None` after the last.
     pub(super) fn next(self, mut cell: Cell) -> Option<Cell> {
         while cell.level > 0 {

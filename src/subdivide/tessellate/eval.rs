@@ -21,7 +21,7 @@ fn reduced(c: i32) -> (i64, u32) {
 }
 
 /// (u, v, w) / 2^16 as numerators and the exponent, in lowest terms.
-fn reduced_barycentric([u, v, w]: Fine) -> ([i64; 3], u32) {
+pub(super) fn reduced_barycentric([u, v, w]: Fine) -> ([i64; 3], u32) {
     let shift = (u as u32 | v as u32 | w as u32 | 1 << FINE).trailing_zeros();
     ([u, v, w].map(|c| i64::from(c >> shift)), FINE - shift)
 }

@@ -2,6 +2,8 @@
 
 mod cell;
 mod eval;
+mod mesh;
+mod normal;
 mod refine;
 mod zip;
 
@@ -10,10 +12,12 @@ use super::{Buffer, PatchTopology, SubdivideError};
 use crate::geometry::Point3;
 use crate::num::I16F16;
 use crate::patch::{Parameter, Surface, SurfaceNet};
-use cell::{Cell, Fine};
+use cell::{Cell, FINE, Fine};
 use eval::{dyadic, eval};
 use refine::{MOST_LEAST, Reach, Tree};
 use zip::{Chain, Leaf, Spot, Zip};
+
+pub use mesh::{Mesh, MeshBuffers, MeshSize, MeshVertex};
 
 /// A corner of a triangle of a tessellation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,7 +77,7 @@ pub fn tessellate<'a, S: Surface>(
         let Some(tree) = mesh.tree(patch) else { continue };
         let mut cell = Some(tree.domain.first());
         while let Some(from) = cell {
-            let leaf = mesh.leaf_from(patch, &tree, from).ok_or(SubdivideError::TooDeep { patch })?;
+            let leaf = mesh.leaf_from(patch, &tree, from).ok_or(SubdivideError::PatchTooDeep { patch, limit: FINE })?;
             cell = tree.domain.next(leaf.cell);
         }
     }
@@ -95,7 +99,7 @@ impl<'a, S: Surface> Tessellation<'a, S> {
     fn leaf_from(&self, patch: usize, tree: &Tree<'a>, from: Cell) -> Option<Leaf> {
         let domain = tree.domain;
         let target = domain.descend(from, domain.deepest());
-        match tree.reach(target, || self.least(patch)) {
+        match tree.reach(target, from.level, || self.least(patch)) {
             Reach::Leaf(level) => Some(Leaf { patch, domain, cell: domain.ancestor(target, level) }),
             _ => None,
         }
@@ -113,10 +117,10 @@ impl<'a, S: Surface> Tessellation<'a, S> {
         }
     }
 
-    /// Whether a cell exists and is split.
-    fn is_split(&self, patch: usize, cell: Cell) -> bool {
+    /// Whether a cell exists and is split; those above level `from` that hold it are known to be.
+    fn is_split(&self, patch: usize, cell: Cell, from: u8) -> bool {
         let Some(tree) = self.tree(patch) else { return false };
-        cell.level < tree.domain.deepest() && tree.reach(cell, || self.least(patch)) == Reach::Split
+        cell.level < tree.domain.deepest() && tree.reach(cell, from, || self.least(patch)) == Reach::Split
     }
 
     /// Whether a cell beyond a segment of a leaf's side has a vertex in the middle of it: segment `index` of 2^down, as
@@ -125,7 +129,7 @@ impl<'a, S: Surface> Tessellation<'a, S> {
         let domain = leaf.domain;
         let ours = domain.along(leaf.cell, side, down, index);
         match domain.across(ours, side) {
-            Some(other) => self.is_split(leaf.patch, other),
+            Some(other) => self.is_split(leaf.patch, other, domain.shared(leaf.cell, other)),
             None => {
                 let exponent = domain.exponent(ours.level, side);
                 self.is_divided_beyond((leaf.patch, side), exponent, domain.place(ours, side))
@@ -150,7 +154,7 @@ impl<'a, S: Surface> Tessellation<'a, S> {
                 let domain = Tree::new(other, self.tolerance).domain;
                 let Some(level) = exponent.checked_sub(domain.exponent(0, across)) else { return true };
                 let level = level as u8;
-                level < domain.deepest() && self.is_split(beyond, domain.on_border(across, level, index))
+                level < domain.deepest() && self.is_split(beyond, domain.on_border(across, level, index), 0)
             })
         })
     }
@@ -178,29 +182,47 @@ impl<'a, S: Surface> Tessellation<'a, S> {
     /// The zips of the current leaf.
     fn start(&mut self) {
         let Some(leaf) = self.leaf else { return };
-        let chain = |side, from| Chain::new(self, &leaf, side, from);
-        let zip = |left, right| Some(Zip::new(self, &leaf, left, right));
-        if leaf.domain.triangle {
-            let sides = [0, 1, 2].map(|side| chain(side, leaf.ends(side).0));
-            // The side that closes the zip.
-            let closing = sides.iter().position(|side| !side.is_divided());
-            if let Some(apex) = closing {
-                let (left, right) = (chain((apex + 2) % 3, apex), chain((apex + 1) % 3, apex));
-                self.zips = [zip(left, right), None];
+        let chain = |(side, from): (usize, usize)| Chain::new(self, &leaf, side, from);
+        let zip = |left: Chain, right: Chain| Some(Zip::new(self, &leaf, left, right));
+        if let Some(sides) = self.triangle(&leaf) {
+            let sides = sides.map(chain);
+            // Counter-clockwise; one that has no vertices inside may close a zip that starts at the opposite corner.
+            let [opposite, ahead, behind] = match sides.iter().position(|side| !side.is_divided()) {
+                Some(1) => [sides[1], sides[2], sides[0]],
+                Some(2) => [sides[2], sides[0], sides[1]],
+                _ => sides,
+            };
+            self.zips = if opposite.is_divided() {
+                let half = opposite.half();
+                [zip(half, behind.reversed()), zip(ahead, opposite.reversed().half())]
             } else {
-                let first = zip(chain(0, 1).half(), chain(2, 1));
-                let second = zip(chain(1, 2), chain(0, 2).half());
-                self.zips = [first, second];
-            }
+                [zip(behind, ahead.reversed()), None]
+            };
             return;
         }
         let corner = |c| self.spot(leaf.patch, leaf.domain.corner(leaf.cell, c)).point;
         let long = squared(corner(0), corner(3)) > squared(corner(1), corner(2));
         self.zips = if long {
-            [zip(chain(2, 0), chain(0, 0)), zip(chain(3, 3), chain(1, 3))]
+            [zip(chain((2, 0)), chain((0, 0))), zip(chain((3, 3)), chain((1, 3)))]
         } else {
-            [zip(chain(1, 1), chain(2, 1)), zip(chain(0, 2), chain(3, 2))]
+            [zip(chain((1, 1)), chain((2, 1))), zip(chain((0, 2)), chain((3, 2)))]
         };
+    }
+
+    /// The three sides of a leaf and the corners where they start, counter-clockwise; `None` for one with four sides. A
+    /// side collapsed to a point is none: the first is opposite to it.
+    fn triangle(&self, leaf: &Leaf) -> Option<[(usize, usize); 3]> {
+        if leaf.domain.triangle {
+            return Some([(2, 0), (0, 1), (1, 2)]);
+        }
+        let net = self.net(leaf.patch)?;
+        let point = |side: &usize| leaf.domain.across(leaf.cell, *side).is_none() && is_collapsed(&net, *side);
+        Some(match (0..4).find(point)? {
+            0 => [(1, 1), (3, 3), (2, 0)],
+            1 => [(0, 2), (2, 0), (3, 3)],
+            2 => [(3, 3), (0, 2), (1, 1)],
+            _ => [(2, 0), (1, 1), (0, 2)],
+        })
     }
 
     fn vertex(&self, leaf: &Leaf, spot: Spot) -> Vertex {
@@ -209,33 +231,38 @@ impl<'a, S: Surface> Tessellation<'a, S> {
     }
 }
 
+impl<S: Surface> Tessellation<'_, S> {
+    fn is_inward(&self, patch: usize) -> bool {
+        self.topology.get(patch).is_some_and(PatchTopology::is_inward)
+    }
+
+    /// The next triangle between three different places.
+    fn next_spots(&mut self) -> Option<(Leaf, [Spot; 3])> {
+        loop {
+            let leaf = self.leaf?;
+            let [mut first, mut second] = self.zips;
+            let next = |zip: &mut Option<Zip>| zip.as_mut().and_then(|zip| zip.next(self, &leaf));
+            let found = next(&mut first).or_else(|| next(&mut second));
+            self.zips = [first, second];
+            match found {
+                Some([a, b, c]) if a.point != b.point && b.point != c.point && c.point != a.point => {
+                    return Some((leaf, if self.is_inward(leaf.patch) { [a, c, b] } else { [a, b, c] }));
+                }
+                Some(_) => {}
+                None => {
+                    self.leaf = self.next_leaf(&leaf);
+                    self.start();
+                }
+            }
+        }
+    }
+}
+
 impl<S: Surface> Iterator for Tessellation<'_, S> {
     type Item = [Vertex; 3];
 
     fn next(&mut self) -> Option<Self::Item> {
-        loop {
-            let leaf = self.leaf?;
-            let [first, second] = &mut self.zips.clone();
-            let found = match (first.as_mut().and_then(|zip| zip.next(self, &leaf)), ()) {
-                (Some(found), ()) => Some(found),
-                (None, ()) => {
-                    *first = None;
-                    second.as_mut().and_then(|zip| zip.next(self, &leaf))
-                }
-            };
-            self.zips = [*first, *second];
-            let Some([a, b, c]) = found else {
-                self.leaf = self.next_leaf(&leaf);
-                self.start();
-                continue;
-            };
-            if a.point == b.point || b.point == c.point || c.point == a.point {
-                continue;
-            }
-            let inward = self.topology.get(leaf.patch).is_some_and(PatchTopology::is_inward);
-            let order = if inward { [a, c, b] } else { [a, b, c] };
-            return Some(order.map(|spot| self.vertex(&leaf, spot)));
-        }
+        self.next_spots().map(|(leaf, corners)| corners.map(|spot| self.vertex(&leaf, spot)))
     }
 }
 

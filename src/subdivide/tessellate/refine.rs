@@ -66,22 +66,23 @@ impl<'a> Tree<'a> {
         Self { net, domain: Domain { triangle, grid }, tolerance }
     }
 
-    /// Goes from the patch towards a cell until a leaf. `least` tells above which level no cell is a leaf; it is asked
-    /// only where it matters.
+    /// Goes from the patch towards a cell until a leaf. Cells above level `from` are known to be split. `least` tells
+    /// above which level no cell is a leaf; it is asked only where it matters.
     ///
     /// Stack: 0.5 KB for polynomial nets of up to 16 points, 2 KB above, 2.7 KB for rational ones, and what a
     /// cut takes.
-    pub(super) fn reach(&self, target: Cell, least: impl Fn() -> u8) -> Reach {
+    pub(super) fn reach(&self, target: Cell, from: u8, least: impl Fn() -> u8) -> Reach {
         match (self.net.points().len(), self.net.weights()) {
-            (_, Some(_)) => self.reach_in::<MOST, MOST>(target, least),
-            (..=16, None) => self.reach_in::<16, 0>(target, least),
-            _ => self.reach_in::<MOST, 0>(target, least),
+            (_, Some(_)) => self.reach_in::<MOST, MOST>(target, from, least),
+            (..=16, None) => self.reach_in::<16, 0>(target, from, least),
+            _ => self.reach_in::<MOST, 0>(target, from, least),
         }
     }
 
     #[inline(never)]
-    fn reach_in<const P: usize, const W: usize>(&self, target: Cell, least: impl Fn() -> u8) -> Reach {
-        let (mut room, mut next) = (Room::<P, W>::of(self.net), Room::<P, W>::EMPTY);
+    fn reach_in<const P: usize, const W: usize>(&self, target: Cell, from: u8, least: impl Fn() -> u8) -> Reach {
+        let (mut one, mut other) = (Room::<P, W>::of(self.net), Room::<P, W>::EMPTY);
+        let (mut room, mut next) = (&mut one, &mut other);
         let count = self.net.points().len();
         let before = self.domain.grid.0.max(self.domain.grid.1);
         let (mut step, mut slack) = (0_u8, 1);
@@ -90,8 +91,12 @@ impl<'a> Tree<'a> {
                 return Reach::TooDeep;
             };
             let net = part_net(self.net, points, weights);
+            if step > 0 {
+                slack += 1 + rounding_of_weights(&net);
+            }
             if let Some(level) = step.checked_sub(before) {
-                if self.is_flat(&net, slack)
+                if level >= from
+                    && self.is_flat(&net, slack)
                     && (level >= SOUND || is_sound(&net))
                     && (level >= MOST_LEAST || level >= least())
                 {
@@ -104,7 +109,6 @@ impl<'a> Tree<'a> {
                     return Reach::Split;
                 }
             }
-            slack += 1 + rounding_of_weights(&net);
             Source::of(net).cut(self.domain.cut(target, step), &mut next.points, &mut next.weights);
             core::mem::swap(&mut room, &mut next);
             step += 1;
@@ -117,12 +121,15 @@ impl<'a> Tree<'a> {
     /// both weights and products of Bernstein polynomials average, so a point of the surface is l(p) + e(p), p in the
     /// cell, with e(p) in the hull of the displacements. A point of the triangle is l(q) + a mean of three such e. p
     /// takes every value q of the cell, also for a rational patch: so the two differ by at most the spread of the
-    /// displacements, axis by axis. The net on the way down is off by `slack` − 1 half-units, a vertex by one.
+    /// displacements, axis by axis. For a polynomial tensor-product patch the bound by second derivatives may be
+    /// smaller. The net on the way down is off by `slack` − 1 half-units, a vertex by one.
     fn is_flat(&self, net: &SurfaceNet<'_>, slack: i64) -> bool {
-        let (scale, spread) = displacements(net);
-        let limit = i128::from(scale * self.tolerance);
-        let square = |c: i64| i128::from(c + scale * slack).pow(2);
-        spread.into_iter().map(square).sum::<i128>() <= limit * limit
+        let within = |(scale, off): (i64, [i64; 3])| {
+            let limit = i128::from(scale * self.tolerance);
+            let square = |c: i64| i128::from(c + scale * slack).pow(2);
+            off.into_iter().map(square).sum::<i128>() <= limit * limit
+        };
+        within(displacements(net)) || matches!(net, SurfaceNet::Tensor(_)) && within(bending(net))
     }
 }
 
@@ -184,6 +191,43 @@ fn displacements(net: &SurfaceNet<'_>) -> (i64, [i64; 3]) {
     (scale, each(|c| high[c] - low[c]))
 }
 
+/// A bound of the distance between a tensor-product patch and any triangle with corners on it, along each axis, times
+/// 8: M_rr + 2 M_rs + M_ss with M the largest second derivatives.
+///
+/// Linear interpolation is off by half the mean of S''(p − p_i)² over the corners p_i, and a mean of squares of one
+/// coordinate about its mean is at most a quarter of the interval's (Filip, Magedson and Markot 1986 for the halves of a
+/// rectangle; this is for every triangle in it).
+fn bending(net: &SurfaceNet<'_>) -> (i64, [i64; 3]) {
+    let ((m, h), points) = (net.degrees(), net.points());
+    let mut most = [[0_i64; 3]; 3];
+    let mut include = |kind: usize, places: [(usize, i64); 4]| {
+        let sum = places.iter().fold([0; 3], |sum: [i64; 3], (index, factor)| {
+            let p = bits(net_point(points, *index));
+            each(|c| sum[c] + factor * p[c])
+        });
+        if let Some(most) = most.get_mut(kind) {
+            *most = each(|c| most[c].max(sum[c].abs()));
+        }
+    };
+    for i in 0..=m {
+        for j in 0..=h {
+            let at = |di: usize, dj: usize| (i + di) * (h + 1) + j + dj;
+            let straight = |step: usize| [(at(0, 0), 1), (at(0, 0) + step, -2), (at(0, 0) + 2 * step, 1), (0, 0)];
+            if i + 2 <= m {
+                include(0, straight(h + 1));
+            }
+            if j + 2 <= h {
+                include(1, straight(1));
+            }
+            if i < m && j < h {
+                include(2, [(at(0, 0), 1), (at(1, 0), -1), (at(0, 1), -1), (at(1, 1), 1)]);
+            }
+        }
+    }
+    let factors = [m * (m - 1), h * (h - 1), 2 * m * h].map(|f| f as i64);
+    (8, each(|c| (0..3).map(|kind| factors[kind] * most[kind][c]).sum()))
+}
+
 /// How much rounding its weights may move a part's surface, in units of 2^-16, rounded up: every weight is off by at most
 /// half a unit of its last bit, so a mean of the points moves by at most their range times that over the least weight.
 fn rounding_of_weights(net: &SurfaceNet<'_>) -> i64 {
@@ -223,23 +267,16 @@ fn has_area([a, b, c]: [Point3; 3]) -> bool {
 /// Bending is measured by second differences, m(m−1)|Δ²| as the distance from a chord has it; halving divides it by 4.
 fn grid(net: &SurfaceNet<'_>, tolerance: i64) -> (u8, u8) {
     let ((m, h), points) = (net.degrees(), net.points());
-    let bend = |from: usize, step: usize| {
-        let [a, b, c] = [from, from + step, from + 2 * step].map(|index| bits(net_point(points, index)));
-        each(|x| (a[x] - 2 * b[x] + c[x]).abs()).into_iter().max().unwrap_or(0)
-    };
-    let (mut along_r, mut along_s) = (0, 0);
-    for i in 0..=m {
-        for j in 0..=h {
-            let at = i * (h + 1) + j;
-            if i + 2 <= m {
-                along_r = along_r.max(bend(at, h + 1));
-            }
-            if j + 2 <= h {
-                along_s = along_s.max(bend(at, 1));
-            }
+    let bend = |step: usize, rows: core::ops::Range<usize>, columns: usize| {
+        let mut most = 0;
+        for from in rows.flat_map(|i| (0..columns).map(move |j| i * (h + 1) + j)) {
+            let [a, b, c] = [from, from + step, from + 2 * step].map(|index| bits(net_point(points, index)));
+            most = each(|x| (a[x] - 2 * b[x] + c[x]).abs()).into_iter().fold(most, i64::max);
         }
-    }
-    let (r, s) = ((m * (m - 1)) as i64 * along_r, (h * (h - 1)) as i64 * along_s);
+        most
+    };
+    let r = (m * (m - 1)) as i64 * bend(h + 1, 0..m - 1, h + 1);
+    let s = (h * (h - 1)) as i64 * bend(1, 0..m + 1, h - 1);
     let halvings = |bend: i64, other: i64| {
         (0..MOST_GRID).find(|k| bend >> (2 * k) <= (2 * other).max(8 * tolerance)).unwrap_or(MOST_GRID)
     };

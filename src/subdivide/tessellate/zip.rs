@@ -43,6 +43,12 @@ impl Chain {
         Self { side, forward, start, step, at: 0, end: full, full, divided }
     }
 
+    /// From the other end.
+    pub(super) fn reversed(self) -> Self {
+        let start = [0, 1, 2].map(|c: usize| self.start[c] + self.step[c] * self.full as i32);
+        Self { start, step: self.step.map(|c| -c), forward: !self.forward, ..self }
+    }
+
     /// Only the first half of a divided side.
     pub(super) fn half(self) -> Self {
         Self { end: self.full / 2, ..self }
@@ -54,6 +60,16 @@ impl Chain {
 
     pub(super) fn is_done(&self) -> bool {
         self.at >= self.end
+    }
+
+    /// The segments of the chain.
+    pub(super) fn count<S: Surface>(mut self, mesh: &Tessellation<'_, S>, leaf: &Leaf) -> usize {
+        let mut count = 0;
+        while !self.is_done() {
+            self.advance(mesh, leaf);
+            count += 1;
+        }
+        count
     }
 
     /// Moves to the next vertex.
@@ -72,7 +88,7 @@ impl Chain {
         [0, 1, 2].map(|c: usize| self.start[c] + self.step[c] * self.at as i32)
     }
 
-    /// The place of the next vertex in sixteenths of the side's length... compared between sides of one leaf.
+    /// The way made, in 2^-16 of the side's length.
     fn progress(&self) -> u32 {
         self.at << (FINE - self.full.trailing_zeros())
     }
