@@ -180,7 +180,7 @@ impl Random {
     /// Two patches that share an edge.
     fn pair(&mut self) -> [AnyPatch; 2] {
         let (degree, kinds) = (1 + self.below(4), self.below(4));
-        let mut any = |random: &mut Self, triangle: bool| {
+        let any = |random: &mut Self, triangle: bool| {
             let other = 1 + random.below(4);
             let edge = random.below(if triangle { 3 } else { 4 });
             let degrees = if triangle {

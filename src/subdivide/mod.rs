@@ -18,5 +18,7 @@ mod topology;
 
 pub use error::{Buffer, SubdivideError};
 pub use exact::{Direction, Half, Quarter, halve_curve, halve_tensor, quarter_triangle};
-pub use tessellate::{Mesh, MeshBuffers, MeshSize, MeshVertex, Tessellation, Vertex, tessellate};
+pub use tessellate::{
+    Mesh, MeshBuffers, MeshSize, MeshVertex, Tessellation, Vertex, tessellate, write_stl, write_stl_text,
+};
 pub use topology::{PatchTopology, topology};

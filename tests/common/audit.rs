@@ -52,14 +52,16 @@ fn has_area([a, b, c]: [Point3; 3]) -> bool {
     (0..3).any(|k| p[k] * q[(k + 1) % 3] != p[(k + 1) % 3] * q[k])
 }
 
-/// The edges of a patch's domain that a parameter pair is on, in the numbering of the crate.
+/// The edges of a patch's domain that a pair of parameters is on, in the numbering of the crate. Parameters are dyadic:
+/// their sum is exact.
 fn domain_edges(triangle: bool, [r, s]: [f64; 2]) -> Vec<usize> {
-    let on: &[(bool, usize)] = if triangle {
-        &[(r == 0.0, 0), (s == 0.0, 1), (r + s == 1.0, 2)]
+    let (is_zero, is_one) = (|c: f64| c <= 0.0, |c: f64| c >= 1.0);
+    let on = if triangle {
+        vec![(is_zero(r), 0), (is_zero(s), 1), (is_one(r + s), 2)]
     } else {
-        &[(r == 0.0, 0), (r == 1.0, 1), (s == 0.0, 2), (s == 1.0, 3)]
+        vec![(is_zero(r), 0), (is_one(r), 1), (is_zero(s), 2), (is_one(s), 3)]
     };
-    on.iter().filter(|(on, _)| *on).map(|(_, edge)| *edge).collect()
+    on.into_iter().filter(|(on, _)| *on).map(|(_, edge)| edge).collect()
 }
 
 /// What a mesh is.

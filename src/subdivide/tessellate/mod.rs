@@ -4,7 +4,9 @@ mod cell;
 mod eval;
 mod mesh;
 mod normal;
+mod obj;
 mod refine;
+mod stl;
 mod zip;
 
 use super::edge::{edge_count, edge_degree, edge_index, is_collapsed, net_point, same_curve};
@@ -18,6 +20,7 @@ use refine::{MOST_LEAST, Reach, Tree};
 use zip::{Chain, Leaf, Spot, Zip};
 
 pub use mesh::{Mesh, MeshBuffers, MeshSize, MeshVertex};
+pub use stl::{write_stl, write_stl_text};
 
 /// A corner of a triangle of a tessellation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
