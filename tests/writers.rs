@@ -105,7 +105,7 @@ fn the_ends_of_the_range_and_flat_triangles_are_written() {
     for (read, ours) in read.iter().zip(&triangles) {
         assert_eq!(read.vertices.map(|v| v.0), ours.map(nearest));
     }
-    assert_eq!(read[1].normal.0, [0.0; 3]);
+    assert!(read[1].normal.0.iter().all(|c| c.to_bits() == 0));
     // An error of the sink comes back, and nothing is written after it.
     let mut calls = 0;
     let full = write_stl(triangles.iter().copied(), |_| {

@@ -66,7 +66,7 @@ mod tests {
             let value = value >> shift;
             // Both conversions round once, and the division is exact.
             let expected = value as f32 / (1_u64 << fraction) as f32;
-            prop_assert_eq!(f32::from_bits(binary32(value, fraction)), expected);
+            prop_assert_eq!(binary32(value, fraction), expected.to_bits());
             let value = i64::from(value as i32);
             prop_assert_eq!(Decimal(value).to_string().parse::<f64>(), Ok(value as f64 / 65536.0));
         }

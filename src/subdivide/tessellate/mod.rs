@@ -216,7 +216,7 @@ impl<'a, S: Surface> Tessellation<'a, S> {
     /// side collapsed to a point is none: the first is opposite to it.
     fn triangle(&self, leaf: &Leaf) -> Option<[(usize, usize); 3]> {
         if leaf.domain.triangle {
-            return Some([(2, 0), (0, 1), (1, 2)]);
+            return Some([(0, 1), (1, 2), (2, 0)]);
         }
         let net = self.net(leaf.patch)?;
         let point = |side: &usize| leaf.domain.across(leaf.cell, *side).is_none() && is_collapsed(&net, *side);

@@ -277,8 +277,10 @@ fn grid(net: &SurfaceNet<'_>, tolerance: i64) -> (u8, u8) {
     };
     let r = (m * (m - 1)) as i64 * bend(h + 1, 0..m - 1, h + 1);
     let s = (h * (h - 1)) as i64 * bend(1, 0..m + 1, h - 1);
+    // What passes by second derivatives along one axis; by displacements, along two or three.
+    let enough = if net.weights().is_none() { 8 * tolerance } else { 3 * tolerance };
     let halvings = |bend: i64, other: i64| {
-        (0..MOST_GRID).find(|k| bend >> (2 * k) <= (2 * other).max(8 * tolerance)).unwrap_or(MOST_GRID)
+        (0..MOST_GRID).find(|k| bend >> (2 * k) <= (2 * other).max(enough)).unwrap_or(MOST_GRID)
     };
     (halvings(r, s), halvings(s, r))
 }
