@@ -299,6 +299,29 @@ fn a_patch_may_meet_itself() {
     }
 }
 
+#[test]
+fn two_patches_may_share_all_their_edges() {
+    // A pillow of two triangles, one of two squares, and a bag: two triangles that share two edges.
+    let triangle = |bump: i16, third: i16| {
+        let edges = [[0, 0, 0], [30, 0, 20], [0, 30, 20], [60, 0, 20], [20, 20, bump], [0, 60, 20]];
+        let last = [[90, 0, 0], [60, 30, third], [30, 60, third], [0, 90, 0]];
+        CubicTriangle::from_ints(core::array::from_fn(|k| if k < 6 { edges[k] } else { last[k - 6] })).unwrap()
+    };
+    let square = |bump: i16| {
+        let inner = |i: usize, j: usize| (1..3).contains(&i) && (1..3).contains(&j);
+        let z = |i, j| if inner(i, j) { bump } else { 0 };
+        let point = |i: usize, j: usize| [30 * i as i16, 30 * j as i16, z(i, j)];
+        BicubicPatch::from_ints(core::array::from_fn(|i| core::array::from_fn(|j| point(i, j)))).unwrap()
+    };
+    let pillow = [triangle(90, 20), triangle(-90, 20)];
+    let bag = [triangle(90, 50), triangle(-90, -20)];
+    for tolerance in [1000.0, 30.0, 8.0, 2.0, 0.5, 0.125] {
+        assert_eq!(watertight(&pillow, tolerance).euler, [2], "at {tolerance}");
+        assert_eq!(watertight(&bag, tolerance).euler, [1], "at {tolerance}");
+        assert_eq!(watertight(&[square(90), square(-90)], tolerance).euler, [2], "at {tolerance}");
+    }
+}
+
 // Indexed meshes.
 
 fn with_mesh<S: Surface>(patches: &[S], tolerance: f64, check: impl FnOnce(MeshSize, Mesh<'_>)) {

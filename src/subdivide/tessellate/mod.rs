@@ -132,6 +132,12 @@ impl<'a, S: Surface> Tessellation<'a, S> {
         let domain = leaf.domain;
         let ours = domain.along(leaf.cell, side, down, index);
         match domain.across(ours, side) {
+            // The side opposite to a pinched corner has a vertex in the middle, so that nothing cuts the corner off.
+            Some(other)
+                if domain.triangle && [ours, other].into_iter().any(|c| self.pinched(leaf, c) == Some(side)) =>
+            {
+                true
+            }
             Some(other) => self.is_split(leaf.patch, other, domain.shared(leaf.cell, other)),
             None => {
                 let exponent = domain.exponent(ours.level, side);
@@ -176,6 +182,26 @@ impl<'a, S: Surface> Tessellation<'a, S> {
         u8::from(others.filter_map(|other| self.net(other)).any(|other| collide(&net, &other)))
     }
 
+    /// The corner of a patch that a cell below level 0 is at, if both edges there belong to one other patch as well: no
+    /// mesh edge may join the two, for the other patch could have it too.
+    fn pinched(&self, leaf: &Leaf, cell: Cell) -> Option<usize> {
+        let (domain, net) = (leaf.domain, self.net(leaf.patch)?);
+        if cell.level == 0 {
+            return None;
+        }
+        let sides = |corner: usize| {
+            if domain.triangle { ((corner + 1) % 3, (corner + 2) % 3) } else { (corner & 1, 2 + (corner >> 1)) }
+        };
+        let on_border = |side| domain.across(cell, side).is_none();
+        let corner = (0..edge_count(&net)).find(|corner| on_border(sides(*corner).0) && on_border(sides(*corner).1))?;
+        let (first, second) = sides(corner);
+        let shared = |other: &SurfaceNet<'_>, edge: usize| {
+            (0..edge_count(other)).any(|across| same_curve((&net, edge), (other, across)).is_some())
+        };
+        let mut others = (0..self.patches.len()).filter(|other| *other != leaf.patch).filter_map(|p| self.net(p));
+        others.any(|other| shared(&other, first) && shared(&other, second)).then_some(corner)
+    }
+
     /// The exact point.
     fn spot(&self, patch: usize, fine: Fine) -> Spot {
         let point = self.net(patch).map_or(Point3::ORIGIN, |net| eval(&net, fine));
@@ -190,7 +216,8 @@ impl<'a, S: Surface> Tessellation<'a, S> {
         if let Some(sides) = self.triangle(&leaf) {
             let sides = sides.map(chain);
             // Counter-clockwise; one that has no vertices inside may close a zip that starts at the opposite corner.
-            let [opposite, ahead, behind] = match sides.iter().position(|side| !side.is_divided()) {
+            let pinched = if leaf.domain.triangle { self.pinched(&leaf, leaf.cell) } else { None };
+            let [opposite, ahead, behind] = match pinched.or(sides.iter().position(|side| !side.is_divided())) {
                 Some(1) => [sides[1], sides[2], sides[0]],
                 Some(2) => [sides[2], sides[0], sides[1]],
                 _ => sides,
@@ -204,7 +231,10 @@ impl<'a, S: Surface> Tessellation<'a, S> {
             return;
         }
         let corner = |c| self.spot(leaf.patch, leaf.domain.corner(leaf.cell, c)).point;
-        let long = squared(corner(0), corner(3)) > squared(corner(1), corner(2));
+        let long = match self.pinched(&leaf, leaf.cell) {
+            Some(corner) => matches!(corner, 1 | 2),
+            None => squared(corner(0), corner(3)) > squared(corner(1), corner(2)),
+        };
         self.zips = if long {
             [zip(chain((2, 0)), chain((0, 0))), zip(chain((3, 3)), chain((1, 3)))]
         } else {
