@@ -1,5 +1,7 @@
 //! Fixed-point numbers as other formats have them: binary32 and decimals, without floating point.
 
+use core::fmt::Write;
+
 /// The bits of the binary32 nearest to `value` / 2^fraction, ties to even.
 ///
 /// For a fraction of at most 126 bits, so that nothing is subnormal.
@@ -33,15 +35,19 @@ impl core::fmt::Display for Decimal {
         let magnitude = self.0.unsigned_abs();
         let sign = if self.0 < 0 { "-" } else { "" };
         write!(f, "{sign}{}", magnitude >> 16)?;
-        let (mut digits, mut width) = ((magnitude & 0xffff) * FIVE_16, 16);
-        if digits == 0 {
-            return Ok(());
+        let mut rest = (magnitude & 0xffff) * FIVE_16;
+        let mut unit = 1_000_000_000_000_000;
+        if rest > 0 {
+            f.write_char('.')?;
         }
-        while digits % 10 == 0 {
-            digits /= 10;
-            width -= 1;
+        while rest > 0 {
+            // 0 ..= 9: the rest is below ten units.
+            let digit = rest.checked_div(unit).unwrap_or(0);
+            f.write_char(char::from(b'0' + digit as u8))?;
+            rest -= digit * unit;
+            unit /= 10;
         }
-        write!(f, ".{digits:0width$}")
+        Ok(())
     }
 }
 

@@ -173,6 +173,22 @@ impl<S: Surface> Tessellation<'_, S> {
     /// Vertices of a part at one place are one, so neighbouring patches share them. Cost: the triangles, exact derivatives once
     /// per vertex, and a look into a hash table per corner.
     ///
+    /// ```
+    /// use embedded_surfaces::geometry::Point3;
+    /// use embedded_surfaces::num::I16F16;
+    /// use embedded_surfaces::patch::sphere;
+    /// use embedded_surfaces::subdivide::{MeshBuffers, MeshVertex, PatchTopology, tessellate, topology};
+    /// let ball = sphere(Point3::ORIGIN, I16F16::from_num(20))?;
+    /// let mut table = [PatchTopology::default(); 8];
+    /// topology(&ball, &mut table)?;
+    /// let triangles = tessellate(&ball, &table, I16F16::from_num(2))?;
+    /// let (mut vertices, mut faces, mut index) = ([MeshVertex::BLANK; 400], [[0; 3]; 800], [0; 800]);
+    /// let buffers = MeshBuffers { vertices: &mut vertices, triangles: &mut faces, index: &mut index };
+    /// let mesh = triangles.mesh(buffers)?;
+    /// assert_eq!((mesh.vertices().len(), mesh.triangles().len()), (triangles.size().vertices, triangles.count()));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`SubdivideError::Buffer`] for the first buffer that is too small, with the entries it needs
     /// ([`size`](Self::size)). What the buffers hold then means nothing.

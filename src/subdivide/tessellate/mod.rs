@@ -1,4 +1,12 @@
-//! Watertight tessellation.
+//! Watertight triangle meshes of patches, to a tolerance.
+//!
+//! Every patch is a quadtree whose leaves are flat to the tolerance. A leaf's side has a vertex wherever a cell that
+//! touches it, of the same patch or of a neighbour on the same curve, has a corner: so there are no T-junctions. Which
+//! these are is found by going down the other side's own quadtree, from its root; both sides agree because both ask the
+//! same trees. No mesh is kept: memory is one net on the way down. The leaf between its sides is cut into triangles
+//! that never have three corners on one side.
+//!
+//! Vertices are exact points of the patches, rounded once; on a common curve they depend on the curve alone.
 
 mod cell;
 mod eval;
@@ -7,6 +15,7 @@ mod normal;
 mod obj;
 mod refine;
 mod stl;
+mod triple;
 mod zip;
 
 use super::edge::{edge_count, edge_degree, edge_index, is_collapsed, net_point, same_curve};
@@ -17,6 +26,7 @@ use crate::patch::{Parameter, Surface, SurfaceNet};
 use cell::{Cell, FINE, Fine};
 use eval::{dyadic, eval};
 use refine::{MOST_LEAST, Reach, Tree};
+use triple::Triple;
 use zip::{Chain, Leaf, Spot, Zip};
 
 pub use mesh::{Mesh, MeshBuffers, MeshSize, MeshVertex};
@@ -34,7 +44,11 @@ pub struct Vertex {
     pub parameters: [Parameter; 2],
 }
 
-/// The triangles.
+/// The triangles of a tessellation, an iterator; made by [`tessellate`].
+///
+/// Each item is three corners, counter-clockwise seen from outside (see [`PatchTopology::is_inward`]). 320 bytes on a
+/// 32-bit target; a step takes 1.5 KB of stack for polynomial patches of up to 16 points, 4 KB above, 6.5 KB for
+/// rational ones.
 #[derive(Debug)]
 pub struct Tessellation<'a, S> {
     patches: &'a [S],
@@ -50,10 +64,60 @@ impl<S> Clone for Tessellation<'_, S> {
     }
 }
 
-/// The tessellation.
+/// The triangles of a watertight mesh of these patches, each point of it within `tolerance` of the surface and each
+/// point of the surface within `tolerance` of it.
+///
+/// *Watertight.* Within a part (see [`PatchTopology::part`]) two triangles meet at every edge that is not on the part's
+/// border, and have its two ends in opposite order; no vertex lies inside an edge. This holds across patches, and where
+/// neighbours are refined differently. Only bit-equal boundary curves are neighbours. A side collapsed to a point
+/// becomes that point.
+///
+/// *Within the tolerance*, by proof: the test of a cell bounds the distance for every triangle with corners on the
+/// patch and parameters in the cell, rounding of nets and vertices included. For a polynomial patch the distance is
+/// that of points at equal parameters. Measured: 0.4 to 1.0 of the tolerance is used.
+///
+/// *Few triangles*: the cubic triangles P and Q of Tian Jie take 898 and 888 at a tolerance of 1, 3470 and 3473 at 1/4;
+/// the teapot, 290 units long, 5880 and 20 299.
+///
+/// Triangles have an area unless the patch itself is degenerate there. Mesh edges may coincide near a corner at which
+/// two edges of one patch are the same curve.
+///
+/// `topology` is what [`topology`](super::topology()) finds for these patches, or a table in flash. It orients the
+/// triangles, and names the parts for [`mesh`](Tessellation::mesh); that there is no crack does not depend on it.
+///
+/// Cost: every leaf is reached from its patch, and so is its neighbour at every segment of its sides, a cut and a test of
+/// a net per level; at a border all edges of all patches are compared. A vertex is evaluated exactly in 64, 128 or, where
+/// the degree and depth ask for it, 640 bits. At the call, every leaf is visited once, so that nothing fails later.
+///
+/// ```
+/// use embedded_graphics::{mock_display::MockDisplay, pixelcolor::Gray8, prelude::*, primitives::*};
+/// use embedded_surfaces::num::I16F16;
+/// use embedded_surfaces::patch::BiquadraticPatch;
+/// use embedded_surfaces::subdivide::{PatchTopology, tessellate, topology};
+///
+/// let sail = [BiquadraticPatch::from_ints([
+///     [[4, 60, 0], [30, 50, 40], [60, 60, 0]],
+///     [[8, 30, 9], [30, 30, 60], [50, 30, 9]],
+///     [[20, 4, 0], [30, 8, 20], [40, 4, 0]],
+/// ])?];
+/// let mut table = [PatchTopology::default()];
+/// topology(&sail, &mut table)?;
+/// let mut display = MockDisplay::<Gray8>::new();
+/// display.set_allow_overdraw(true); // triangles share their borders
+/// for (count, corners) in tessellate(&sail, &table, I16F16::ONE)?.enumerate() {
+///     let [a, b, c] = corners.map(|vertex| Point::new(vertex.point.x.to_num(), vertex.point.y.to_num()));
+///     let shade = PrimitiveStyle::with_fill(Gray8::new(100 + 4 * (count % 32) as u8));
+///     Triangle::new(a, b, c).into_styled(shade).draw(&mut display)?;
+/// }
+/// assert!(display.get_pixel(Point::new(30, 30)).is_some());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
-/// todo
+/// [`SubdivideError::Tolerance`] unless it is positive; [`SubdivideError::Buffer`] for fewer entries of the topology than
+/// patches; [`SubdivideError::Point`] for a patch whose control points are all equal;
+/// [`SubdivideError::PatchTooDeep`] where 16 halvings in one direction do not make a patch flat. Rounding takes some
+/// 2^-16 a level, and more where weights differ by factors beyond 2^10, so the finest tolerance is around 2^-11.
 pub fn tessellate<'a, S: Surface>(
     patches: &'a [S],
     topology: &'a [PatchTopology],
@@ -317,11 +381,10 @@ fn collide(net: &SurfaceNet<'_>, other: &SurfaceNet<'_>) -> bool {
         }) && (0..edge_count(net)).any(|edge| has(edge_ends(net, edge)))
             && (0..edge_count(other)).any(|edge| has(edge_ends(other, edge)))
     };
-    let pairs = [(0, 1), (0, 2), (1, 2), (0, 3), (1, 3), (2, 3)];
-    pairs.into_iter().any(|(i, j)| {
-        let (p, q) = (ours[i], ours[j]);
-        p != q && theirs.contains(&p) && theirs.contains(&q) && !same_side(p, q)
-    })
+    let [a, b, c, d] = ours;
+    [(a, b), (a, c), (b, c), (a, d), (b, d), (c, d)]
+        .into_iter()
+        .any(|(p, q)| p != q && theirs.contains(&p) && theirs.contains(&q) && !same_side(p, q))
 }
 
 /// The corners; the last of a triangle twice.
@@ -332,6 +395,5 @@ fn corners(net: &SurfaceNet<'_>) -> [Point3; 4] {
 }
 
 fn squared(a: Point3, b: Point3) -> i128 {
-    let (a, b) = (a.to_array(), b.to_array());
-    a.into_iter().zip(b).map(|(a, b)| i128::from(i64::from(a.to_bits()) - i64::from(b.to_bits())).pow(2)).sum()
+    (Triple::of(a) - Triple::of(b)).to_array().into_iter().map(|c| i128::from(c).pow(2)).sum()
 }

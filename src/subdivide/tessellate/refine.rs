@@ -1,10 +1,12 @@
 //! Where a patch's quadtree ends: the test of a cell, and the way down to one.
 
 use super::cell::{Cell, Domain};
+use super::triple::Triple;
 use crate::geometry::Point3;
 use crate::num::{Coord, I16F16};
 use crate::patch::{MAX_DEGREE, SurfaceNet, triangle_index};
-use crate::subdivide::edge::net_point;
+use crate::subdivide::Direction;
+use crate::subdivide::edge::{is_collapsed, net_point};
 use crate::subdivide::rounded::{Source, part_net};
 
 /// The most control points of a net.
@@ -124,10 +126,10 @@ impl<'a> Tree<'a> {
     /// displacements, axis by axis. For a polynomial tensor-product patch the bound by second derivatives may be
     /// smaller. The net on the way down is off by `slack` − 1 half-units, a vertex by one.
     fn is_flat(&self, net: &SurfaceNet<'_>, slack: i64) -> bool {
-        let within = |(scale, off): (i64, [i64; 3])| {
+        let within = |(scale, off): (i64, Triple)| {
             let limit = i128::from(scale * self.tolerance);
             let square = |c: i64| i128::from(c + scale * slack).pow(2);
-            off.into_iter().map(square).sum::<i128>() <= limit * limit
+            off.to_array().into_iter().map(square).sum::<i128>() <= limit * limit
         };
         within(displacements(net)) || matches!(net, SurfaceNet::Tensor(_)) && within(bending(net))
     }
@@ -136,59 +138,64 @@ impl<'a> Tree<'a> {
 /// The most that `least` may answer.
 pub(super) const MOST_LEAST: u8 = 2;
 
-fn bits(p: Point3) -> [i64; 3] {
-    p.to_array().map(Coord::bits)
-}
-
-/// Combines three axes.
-fn each(f: impl Fn(usize) -> i64) -> [i64; 3] {
-    [f(0), f(1), f(2)]
-}
-
 /// How far the displacements of a net from an affine map spread along each axis, times the first result.
 ///
 /// The map is that of the corners of a triangle; of a tensor-product patch that of the parallelogram nearest to its
 /// corners. Below 2^45.
-fn displacements(net: &SurfaceNet<'_>) -> (i64, [i64; 3]) {
+fn displacements(net: &SurfaceNet<'_>) -> (i64, Triple) {
     let ((m, h), points) = (net.degrees(), net.points());
-    let corner = |index: usize| bits(net_point(points, index));
-    let (mut low, mut high) = ([0; 3], [0; 3]);
-    let mut include = |e: [i64; 3]| {
-        for ((low, high), e) in low.iter_mut().zip(&mut high).zip(e) {
-            (*low, *high) = ((*low).min(e), (*high).max(e));
-        }
+    let at = |index: usize| Triple::of(net_point(points, index));
+    let mut range = None;
+    let mut include = |e: Triple| {
+        let (low, high) = range.unwrap_or((e, e));
+        range = Some((low.min(e), high.max(e)));
     };
-    let n = m as i64;
+    let (n, mut index) = (m as i64, 0);
     let scale = if net.is_triangle() {
-        let (u, v, w) = (corner(0), corner(triangle_index(m, 0)), corner(triangle_index(0, m)));
-        let mut index = 0;
-        for row in 0..=m {
+        let (u, v, w) = (at(0), at(triangle_index(m, 0)), at(triangle_index(0, m)));
+        for row in 0..=n {
             for k in 0..=row {
-                let (b, k) = (corner(index), k as i64);
-                let (i, j) = (n - row as i64, row as i64 - k);
-                include(each(|c| n * b[c] - i * u[c] - j * v[c] - k * w[c]));
+                include(at(index) * n - u * (n - row) - v * (row - k) - w * k);
                 index += 1;
             }
         }
         n
     } else {
-        let last = points.len() - 1;
-        let (a, b, c, d) = (corner(0), corner(last - h), corner(h), corner(last));
+        let last = points.len().saturating_sub(1);
+        let (a, b, c, d) = (at(0), at(last - h), at(h), at(last));
         let h = h as i64;
-        let along_r = each(|x| h * (b[x] - a[x] + d[x] - c[x]));
-        let along_s = each(|x| n * (c[x] - a[x] + d[x] - b[x]));
-        let sum = each(|x| n * h * (a[x] + b[x] + c[x] + d[x]));
-        let mut index = 0;
+        let (along_r, along_s) = ((b - a + d - c) * h, (c - a + d - b) * n);
+        let middle = (a + b + c + d) * (n * h);
         for i in 0..=n {
             for j in 0..=h {
-                let p = corner(index);
-                include(each(|x| 4 * n * h * p[x] - sum[x] - (2 * i - n) * along_r[x] - (2 * j - h) * along_s[x]));
+                include(at(index) * (4 * n * h) - middle - along_r * (2 * i - n) - along_s * (2 * j - h));
                 index += 1;
             }
         }
         4 * n * h
     };
-    (scale, each(|c| high[c] - low[c]))
+    (scale, range.map_or(Triple::default(), |(low, high)| high - low))
+}
+
+/// Calls `visit` for the second differences of a tensor-product net: along r, along s, and mixed.
+fn second_differences(net: &SurfaceNet<'_>, mut visit: impl FnMut(Option<Direction>, Triple)) {
+    let ((m, h), points) = (net.degrees(), net.points());
+    let at = |index: usize| Triple::of(net_point(points, index));
+    for i in 0..=m {
+        for j in 0..=h {
+            let here = i * (h + 1) + j;
+            let straight = |step: usize| at(here) - at(here + step) * 2 + at(here + 2 * step);
+            if i + 2 <= m {
+                visit(Some(Direction::R), straight(h + 1));
+            }
+            if j + 2 <= h {
+                visit(Some(Direction::S), straight(1));
+            }
+            if i < m && j < h {
+                visit(None, at(here) - at(here + 1) - at(here + h + 1) + at(here + h + 2));
+            }
+        }
+    }
 }
 
 /// A bound of the distance between a tensor-product patch and any triangle with corners on it, along each axis, times
@@ -197,35 +204,18 @@ fn displacements(net: &SurfaceNet<'_>) -> (i64, [i64; 3]) {
 /// Linear interpolation is off by half the mean of S''(p − p_i)² over the corners p_i, and a mean of squares of one
 /// coordinate about its mean is at most a quarter of the interval's (Filip, Magedson and Markot 1986 for the halves of a
 /// rectangle; this is for every triangle in it).
-fn bending(net: &SurfaceNet<'_>) -> (i64, [i64; 3]) {
-    let ((m, h), points) = (net.degrees(), net.points());
-    let mut most = [[0_i64; 3]; 3];
-    let mut include = |kind: usize, places: [(usize, i64); 4]| {
-        let sum = places.iter().fold([0; 3], |sum: [i64; 3], (index, factor)| {
-            let p = bits(net_point(points, *index));
-            each(|c| sum[c] + factor * p[c])
-        });
-        if let Some(most) = most.get_mut(kind) {
-            *most = each(|c| most[c].max(sum[c].abs()));
-        }
-    };
-    for i in 0..=m {
-        for j in 0..=h {
-            let at = |di: usize, dj: usize| (i + di) * (h + 1) + j + dj;
-            let straight = |step: usize| [(at(0, 0), 1), (at(0, 0) + step, -2), (at(0, 0) + 2 * step, 1), (0, 0)];
-            if i + 2 <= m {
-                include(0, straight(h + 1));
-            }
-            if j + 2 <= h {
-                include(1, straight(1));
-            }
-            if i < m && j < h {
-                include(2, [(at(0, 0), 1), (at(1, 0), -1), (at(0, 1), -1), (at(1, 1), 1)]);
-            }
-        }
-    }
-    let factors = [m * (m - 1), h * (h - 1), 2 * m * h].map(|f| f as i64);
-    (8, each(|c| (0..3).map(|kind| factors[kind] * most[kind][c]).sum()))
+fn bending(net: &SurfaceNet<'_>) -> (i64, Triple) {
+    let (m, h) = net.degrees();
+    let (mut r, mut s, mut mixed) = (Triple::default(), Triple::default(), Triple::default());
+    second_differences(net, |direction, difference| {
+        let most = match direction {
+            Some(Direction::R) => &mut r,
+            Some(Direction::S) => &mut s,
+            None => &mut mixed,
+        };
+        *most = most.max(difference.abs());
+    });
+    (8, r * (m * (m - 1)) as i64 + mixed * (2 * m * h) as i64 + s * (h * (h - 1)) as i64)
 }
 
 /// How much rounding its weights may move a part's surface, in units of 2^-16, rounded up: every weight is off by at most
@@ -233,8 +223,7 @@ fn bending(net: &SurfaceNet<'_>) -> (i64, [i64; 3]) {
 fn rounding_of_weights(net: &SurfaceNet<'_>) -> i64 {
     let Some(least) = net.weights().and_then(|w| w.iter().map(|w| w.bits()).min()) else { return 0 };
     let bounds = net.bounds();
-    let (low, high) = (bits(bounds.min), bits(bounds.max));
-    let range = each(|c| high[c] - low[c]).into_iter().max().unwrap_or(0);
+    let range = (Triple::of(bounds.max) - Triple::of(bounds.min)).largest();
     (2 * range).checked_div(least).map_or(0, |units| units + 1)
 }
 
@@ -244,39 +233,30 @@ fn is_sound(net: &SurfaceNet<'_>) -> bool {
     let corner = |index: usize| net_point(points, index);
     if net.is_triangle() {
         let corners = [corner(0), corner(triangle_index(m, 0)), corner(triangle_index(0, m))];
-        return (0..3).any(|side| crate::subdivide::edge::is_collapsed(net, side)) || has_area(corners);
+        return (0..3).any(|side| is_collapsed(net, side)) || has_area(corners);
     }
     let last = points.len().saturating_sub(1);
     let [a, b, c, d] = [0, last - h, h, last].map(corner);
-    let collapsed = (0..4).any(|side| crate::subdivide::edge::is_collapsed(net, side));
+    let collapsed = (0..4).any(|side| is_collapsed(net, side));
     collapsed || [[a, b, c], [b, d, c], [a, b, d], [a, d, c]].into_iter().all(has_area)
 }
 
 fn has_area([a, b, c]: [Point3; 3]) -> bool {
-    let (a, b, c) = (bits(a), bits(b), bits(c));
-    let (p, q) = (each(|x| b[x] - a[x]), each(|x| c[x] - a[x]));
-    let wide = i128::from;
-    (0..3).any(|x| {
-        let (y, z) = ((x + 1) % 3, (x + 2) % 3);
-        wide(p[y]) * wide(q[z]) != wide(p[z]) * wide(q[y])
-    })
+    let [a, b, c] = [a, b, c].map(Triple::of);
+    !(b - a).is_parallel(c - a)
 }
 
 /// How often a tensor-product patch is halved in one direction so that its cells bend about as much in both.
 ///
 /// Bending is measured by second differences, m(m−1)|Δ²| as the distance from a chord has it; halving divides it by 4.
 fn grid(net: &SurfaceNet<'_>, tolerance: i64) -> (u8, u8) {
-    let ((m, h), points) = (net.degrees(), net.points());
-    let bend = |step: usize, rows: core::ops::Range<usize>, columns: usize| {
-        let mut most = 0;
-        for from in rows.flat_map(|i| (0..columns).map(move |j| i * (h + 1) + j)) {
-            let [a, b, c] = [from, from + step, from + 2 * step].map(|index| bits(net_point(points, index)));
-            most = each(|x| (a[x] - 2 * b[x] + c[x]).abs()).into_iter().fold(most, i64::max);
-        }
-        most
-    };
-    let r = (m * (m - 1)) as i64 * bend(h + 1, 0..m - 1, h + 1);
-    let s = (h * (h - 1)) as i64 * bend(1, 0..m + 1, h - 1);
+    let ((m, h), mut r, mut s) = (net.degrees(), 0, 0);
+    second_differences(net, |direction, difference| match direction {
+        Some(Direction::R) => r = difference.abs().largest().max(r),
+        Some(Direction::S) => s = difference.abs().largest().max(s),
+        None => {}
+    });
+    let (r, s) = ((m * (m - 1)) as i64 * r, (h * (h - 1)) as i64 * s);
     // What passes by second derivatives along one axis; by displacements, along two or three.
     let enough = if net.weights().is_none() { 8 * tolerance } else { 3 * tolerance };
     let halvings = |bend: i64, other: i64| {

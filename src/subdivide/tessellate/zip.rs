@@ -37,7 +37,8 @@ impl Chain {
         let to = if forward { last } else { first };
         let domain = leaf.domain;
         let (start, target) = (domain.corner(leaf.cell, from), domain.corner(leaf.cell, to));
-        let step = [0, 1, 2].map(|c: usize| (target[c] - start[c]).signum());
+        let ([a, b, c], [x, y, z]) = (start, target);
+        let step = [x - a, y - b, z - c].map(i32::signum);
         let full = 1 << (FINE - domain.exponent(leaf.cell.level, side));
         let divided = mesh.is_divided(leaf, side, (0, 0));
         Self { side, forward, start, step, at: 0, end: full, full, divided }
@@ -45,8 +46,7 @@ impl Chain {
 
     /// From the other end.
     pub(super) fn reversed(self) -> Self {
-        let start = [0, 1, 2].map(|c: usize| self.start[c] + self.step[c] * self.full as i32);
-        Self { start, step: self.step.map(|c| -c), forward: !self.forward, ..self }
+        Self { start: self.place(self.full), step: self.step.map(|c| -c), forward: !self.forward, ..self }
     }
 
     /// Only the first half of a divided side.
@@ -75,7 +75,7 @@ impl Chain {
     /// Moves to the next vertex.
     fn advance<S: Surface>(&mut self, mesh: &Tessellation<'_, S>, leaf: &Leaf) -> Fine {
         let mut size = if self.at == 0 { self.full } else { 1 << self.at.trailing_zeros() };
-        let mut down = (self.full / size).trailing_zeros();
+        let mut down = self.full.trailing_zeros() - size.trailing_zeros();
         while self.divided && size > 1 {
             let low = if self.forward { self.at } else { self.full - self.at - size };
             if !mesh.is_divided(leaf, self.side, (down as u8, low >> size.trailing_zeros())) {
@@ -85,7 +85,13 @@ impl Chain {
             down += 1;
         }
         self.at += size;
-        [0, 1, 2].map(|c: usize| self.start[c] + self.step[c] * self.at as i32)
+        self.place(self.at)
+    }
+
+    /// The point so many steps from the start.
+    fn place(&self, steps: u32) -> Fine {
+        let ([a, b, c], [x, y, z], steps) = (self.start, self.step, steps as i32);
+        [a + x * steps, b + y * steps, c + z * steps]
     }
 
     /// The way made, in 2^-16 of the side's length.
