@@ -9,6 +9,7 @@ mod common;
 mod scene;
 
 use audit::{AnyPatch, Audit, deviation, joined, mesh, numbers, units, watertight};
+use common::draw::{cases, net, weights};
 use common::{SEED_P, SEED_Q, coordinate, ratio, round_half_up};
 use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::num::I16F16;
@@ -21,6 +22,7 @@ use embedded_surfaces::subdivide::{
     Buffer, Mesh, MeshBuffers, MeshSize, MeshVertex, PatchTopology, SubdivideError, tessellate,
 };
 use num_bigint::BigInt;
+use proptest::prelude::*;
 use scene::{Look, Random, teacup, teapot};
 
 fn seed() -> [CubicTriangle; 2] {
@@ -227,7 +229,7 @@ fn two_hundred_pairs_sharing_an_edge_are_watertight_at_five_tolerances() {
         assert!(table[0].part() == 0 && table[1].part() == 0);
         kinds[usize::from(pair[0].triangle) + usize::from(pair[1].triangle)] += 1;
         reversed += usize::from(table[0].is_inward() == table[1].is_inward());
-        for tolerance in [50.0, 8.0, 2.0, 1.0, 0.5] {
+        for tolerance in [50.0, 8.0, 3.0, 1.5, 0.75] {
             let Audit { euler, flat, .. } = watertight(&pair, tolerance);
             assert_eq!((euler, flat), (vec![1], 0), "{pair:?}");
         }
@@ -319,6 +321,51 @@ fn two_patches_may_share_all_their_edges() {
         assert_eq!(watertight(&pillow, tolerance).euler, [2], "at {tolerance}");
         assert_eq!(watertight(&bag, tolerance).euler, [1], "at {tolerance}");
         assert_eq!(watertight(&[square(90), square(-90)], tolerance).euler, [2], "at {tolerance}");
+    }
+}
+
+#[test]
+fn patches_may_have_two_collapsed_sides() {
+    // An orange of four segments from pole to pole.
+    let segment = |quarter: usize| {
+        let around = [[120, 0], [120, 66], [66, 120], [0, 120]];
+        let turned = |[x, y]: [i16; 2]| (0..quarter).fold([x, y], |[x, y], _| [-y, x]);
+        BicubicPatch::from_ints(
+            [90, 60, -60, -90]
+                .map(|z: i16| around.map(|p| if z.abs() == 90 { [0, 0, z] } else { [turned(p)[0], turned(p)[1], z] })),
+        )
+        .unwrap()
+    };
+    let orange = [0, 1, 2, 3].map(segment);
+    for tolerance in [1000.0, 60.0, 16.0, 4.0, 1.0, 0.25] {
+        let Audit { euler, flat, border, .. } = watertight(&orange, tolerance);
+        assert_eq!((euler, flat, border), (vec![2], 0, 0), "at {tolerance}");
+    }
+}
+
+proptest! {
+    #![proptest_config(cases(40))]
+    #[test]
+    fn wild_nets_of_the_whole_range_have_no_crack(
+        (triangle, m, h, fine) in (any::<bool>(), 1_usize..=8, 1_usize..=8, 0..4),
+        points in net::<I16F16>(81),
+        weights in weights(81),
+        rational in 0..4,
+    ) {
+        let degrees = if triangle { (m, m) } else { (m, h) };
+        let count = if triangle { (m + 1) * (m + 2) / 2 } else { (m + 1) * (h + 1) };
+        let weights = (rational == 0).then(|| weights[..count].to_vec());
+        let patch = AnyPatch { triangle, degrees, points: points[..count].to_vec(), weights };
+        let table = joined(std::slice::from_ref(&patch));
+        let tolerance = I16F16::from_num(12_000 >> fine);
+        match tessellate(std::slice::from_ref(&patch), &table, tolerance) {
+            Ok(_) => {
+                let audit = watertight(std::slice::from_ref(&patch), tolerance.to_num());
+                prop_assert!(audit.euler[0] == 1 || audit.triangles == 0, "{audit:?}");
+            }
+            // Weights far apart cannot be subdivided in 31 bits.
+            Err(error) => prop_assert!(matches!(error, SubdivideError::PatchTooDeep { .. }) && rational == 0, "{error}"),
+        }
     }
 }
 

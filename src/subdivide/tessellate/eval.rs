@@ -28,7 +28,7 @@ pub(super) fn reduced_barycentric([u, v, w]: Fine) -> ([i64; 3], u32) {
 
 /// The exact point of a patch, rounded once, half up.
 ///
-/// Stack: 0.2 KB with `i64`, 0.4 KB with `i128`, and for what exceeds 124 bits that of the patch's own `eval`.
+/// Stack: 0.8 KB with `i64`, 1.6 KB with `i128`, and for what exceeds 124 bits that of the patch's own `eval`.
 pub(super) fn eval(net: &SurfaceNet<'_>, fine: Fine) -> Point3 {
     let (m, h) = net.degrees();
     let shift = if net.is_triangle() {

@@ -1,7 +1,7 @@
 //! Indexed meshes in the caller's buffers.
 
 use super::cell::Fine;
-use super::zip::{Chain, Leaf};
+use super::zip::{Chain, Leaf, Run};
 use super::{Tessellation, edge_ends, normal};
 use crate::geometry::{Point3, Vector3};
 use crate::num::{Coord, I16F16};
@@ -127,7 +127,9 @@ impl<S: Surface> Tessellation<'_, S> {
             let sides = if leaf.domain.triangle { 3 } else { 4 };
             let mut corners = 0;
             for (side, segments) in border.iter_mut().enumerate().take(sides) {
-                let count = Chain::new(self, &leaf, side, leaf.ends(side).0).count(self, &leaf);
+                let divided = self.is_divided(&leaf, side, (0, 0));
+                let run = Run { side, from: leaf.ends(side).0, divided, half: false };
+                let count = Chain::new(&leaf, run).count(self, &leaf);
                 corners += count;
                 if leaf.domain.across(leaf.cell, side).is_none() {
                     *segments += count;

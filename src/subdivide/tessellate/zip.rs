@@ -29,33 +29,39 @@ pub(super) struct Chain {
     divided: bool,
 }
 
-impl Chain {
-    /// The whole side from one corner to another.
-    pub(super) fn new<S: Surface>(mesh: &Tessellation<'_, S>, leaf: &Leaf, side: usize, from: usize) -> Self {
-        let (first, last) = leaf.ends(side);
-        let forward = first == from;
-        let to = if forward { last } else { first };
-        let domain = leaf.domain;
-        let (start, target) = (domain.corner(leaf.cell, from), domain.corner(leaf.cell, to));
-        let ([a, b, c], [x, y, z]) = (start, target);
-        let step = [x - a, y - b, z - c].map(i32::signum);
-        let full = 1 << (FINE - domain.exponent(leaf.cell.level, side));
-        let divided = mesh.is_divided(leaf, side, (0, 0));
-        Self { side, forward, start, step, at: 0, end: full, full, divided }
-    }
+/// Which chain: a side, the corner it starts from, whether there are vertices between its ends, and whether it ends at
+/// the middle one of these.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Run {
+    pub(super) side: usize,
+    pub(super) from: usize,
+    pub(super) divided: bool,
+    pub(super) half: bool,
+}
 
-    /// From the other end.
-    pub(super) fn reversed(self) -> Self {
-        Self { start: self.place(self.full), step: self.step.map(|c| -c), forward: !self.forward, ..self }
+impl Run {
+    /// The same side from its other end.
+    pub(super) fn reversed(self, leaf: &Leaf) -> Self {
+        let (first, last) = leaf.ends(self.side);
+        Self { from: if self.from == first { last } else { first }, ..self }
     }
 
     /// Only the first half of a divided side.
     pub(super) fn half(self) -> Self {
-        Self { end: self.full / 2, ..self }
+        Self { half: true, ..self }
     }
+}
 
-    pub(super) fn is_divided(&self) -> bool {
-        self.divided
+impl Chain {
+    pub(super) fn new(leaf: &Leaf, run: Run) -> Self {
+        let Run { side, from, divided, half } = run;
+        let (domain, cell) = (leaf.domain, leaf.cell);
+        let (start, target) = (domain.corner(cell, from), domain.corner(cell, run.reversed(leaf).from));
+        let ([a, b, c], [x, y, z]) = (start, target);
+        let step = [x - a, y - b, z - c].map(i32::signum);
+        let full = 1 << (FINE - domain.exponent(cell.level, side));
+        let end = if half { full / 2 } else { full };
+        Self { side, forward: leaf.ends(side).0 == from, start, step, at: 0, end, full, divided }
     }
 
     pub(super) fn is_done(&self) -> bool {
@@ -130,7 +136,9 @@ pub(super) struct Zip {
 
 impl Zip {
     /// `left` turns counter-clockwise into `right`.
-    pub(super) fn new<S: Surface>(mesh: &Tessellation<'_, S>, leaf: &Leaf, left: Chain, right: Chain) -> Self {
+    #[inline(never)]
+    pub(super) fn new<S: Surface>(mesh: &Tessellation<'_, S>, leaf: &Leaf, (left, right): (Run, Run)) -> Self {
+        let (left, right) = (Chain::new(leaf, left), Chain::new(leaf, right));
         let apex = mesh.spot(leaf.patch, left.start);
         Self { left: (left, apex), right: (right, apex) }
     }
