@@ -3,6 +3,8 @@
 //! CI compares the files byte for byte; `UPDATE_DOCS=1 cargo test --test docs` embeds them in the docs.
 #![allow(clippy::disallowed_types, clippy::float_arithmetic, reason = "host-side figures")]
 
+#[path = "data/convergence.rs"]
+mod convergence;
 #[path = "data/draw.rs"]
 mod draw;
 #[path = "data/seed.rs"]
@@ -51,7 +53,8 @@ fn main() -> Outcome {
     seed_patches(&folder)?;
     styles(&folder)?;
     shapes(&folder)?;
-    curves(&folder)
+    curves(&folder)?;
+    save(&folder, "convergence", &convergence::draw(BACKGROUND)?)
 }
 
 fn save<C: PixelColor + Into<Rgb888>>(folder: &Path, name: &str, display: &SimulatorDisplay<C>) -> Outcome {

@@ -20,7 +20,7 @@ use embedded_surfaces::patch::BicubicPatch;
 use embedded_surfaces::reference::fixed_half_up;
 use embedded_surfaces::render::{Area, Light, Scene, Style};
 use embedded_surfaces::subdivide::{
-    Mesh, MeshBuffers, MeshVertex, PatchTopology, tessellate, topology, write_stl, write_stl_text,
+    Mesh, MeshBuffers, MeshVertex, PatchTopology, Tolerance, tessellate, topology, write_stl, write_stl_text,
 };
 use std::error::Error;
 use std::fs::File;
@@ -77,6 +77,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let scale = to_millimetres(arguments.length)?;
     let patches = teapot::patches(&scale)?;
     let tolerance = fixed_half_up(arguments.tolerance).ok_or("--tolerance: out of range")?;
+    let tolerance = Tolerance::new(tolerance).map_err(|error| format!("--tolerance: {error}"))?;
 
     // The topology needs one entry a patch; it could be a constant in flash.
     let mut table = [PatchTopology::default(); 32];

@@ -19,7 +19,7 @@ use embedded_surfaces::patch::{
 };
 use embedded_surfaces::reference::fixed_half_up;
 use embedded_surfaces::subdivide::{
-    Buffer, Mesh, MeshBuffers, MeshSize, MeshVertex, PatchTopology, SubdivideError, tessellate,
+    Buffer, Mesh, MeshBuffers, MeshSize, MeshVertex, PatchTopology, SubdivideError, Tolerance, tessellate,
 };
 use num_bigint::BigInt;
 use proptest::prelude::*;
@@ -358,7 +358,7 @@ proptest! {
         let patch = AnyPatch { triangle, degrees, points: points[..count].to_vec(), weights };
         let table = joined(std::slice::from_ref(&patch));
         let tolerance = I16F16::from_num(12_000 >> fine);
-        match tessellate(std::slice::from_ref(&patch), &table, tolerance) {
+        match tessellate(std::slice::from_ref(&patch), &table, Tolerance::new(tolerance).unwrap()) {
             Ok(_) => {
                 let audit = watertight(std::slice::from_ref(&patch), tolerance.to_num());
                 prop_assert!(audit.euler[0] == 1 || audit.triangles == 0, "{audit:?}");
@@ -462,9 +462,10 @@ fn normals_point_outwards_also_at_poles() {
 fn bad_input_is_a_typed_error() {
     let patches = [FlatTriangle::from_ints([[0, 0, 0], [9, 0, 0], [0, 9, 0]]).unwrap(); 2];
     let point = FlatTriangle::from_ints([[3, 4, 5]; 3]).unwrap();
-    let table = [PatchTopology::default(); 2];
+    let (table, one) = ([PatchTopology::default(); 2], Tolerance::new(I16F16::ONE).unwrap());
     let error = |patches: &[FlatTriangle], table: &[PatchTopology], bits: i32| {
-        let error = tessellate(patches, table, I16F16::from_bits(bits)).err().unwrap();
+        let tolerance = Tolerance::new(I16F16::from_bits(bits));
+        let error = tolerance.and_then(|tolerance| tessellate(patches, table, tolerance)).err().unwrap();
         (error, error.to_string())
     };
     let expected = SubdivideError::Tolerance { bits: 0 };
@@ -478,17 +479,17 @@ fn bad_input_is_a_typed_error() {
     let expected = SubdivideError::Point { patch: 1 };
     assert_eq!(error(&[patches[0], point], &table, 9), (expected, "all control points of patch 1 are equal".into()));
     let steep = CubicTriangle::from_ints(SEED_P).unwrap();
-    let error = tessellate(&[steep], &table, I16F16::DELTA).err().unwrap();
+    let error = tessellate(&[steep], &table, Tolerance::new(I16F16::DELTA).unwrap()).err().unwrap();
     assert_eq!(error, SubdivideError::PatchTooDeep { patch: 0, limit: 16 });
     assert_eq!(error.to_string(), "parts of patch 0 are not flat to the tolerance after 16 halvings");
-    assert_eq!(tessellate::<BicubicPatch>(&[], &[], I16F16::ONE).unwrap().count(), 0);
+    assert_eq!(tessellate::<BicubicPatch>(&[], &[], one).unwrap().count(), 0);
     // Ends of the legal range, and a needle.
     let far = BilinearPatch::from_ints([[[-32767; 3], [32767, -32767, 0]], [[-32767, 32767, 0], [32767; 3]]]).unwrap();
     assert_eq!(watertight(&[far], 20000.0).euler, [1]);
     assert_eq!(watertight(&[far], 900.0).euler, [1]);
     let folded = BilinearPatch::from_ints([[[0; 3], [90, 0, 0]], [[0, 90, 0], [90, 90, 90]]]).unwrap();
     let extreme = RationalTensor::new(folded, [[I16F16::DELTA, I16F16::MAX], [I16F16::MAX, I16F16::DELTA]]).unwrap();
-    assert!(tessellate(&[extreme], &table, fixed(1)).is_err());
+    assert!(tessellate(&[extreme], &table, one).is_err());
     let line = CubicTriangle::from_ints(SEED_P.map(|[x, ..]| [x, x, x])).unwrap();
-    assert!(tessellate(&[line], &table, fixed(1)).unwrap().count() > 0);
+    assert!(tessellate(&[line], &table, one).unwrap().count() > 0);
 }

@@ -7,7 +7,7 @@ use embedded_surfaces::num::I16F16;
 use embedded_surfaces::patch::{Parameter, SurfaceNet};
 use embedded_surfaces::reference::fixed_half_up;
 use embedded_surfaces::subdivide::{
-    MeshBuffers, MeshVertex, PatchTopology, SubdivideError, Tessellation, tessellate, topology,
+    MeshBuffers, MeshVertex, PatchTopology, SubdivideError, Tessellation, Tolerance, tessellate, topology,
 };
 use serde_json::{Map, Value};
 
@@ -36,7 +36,7 @@ fn corners(tessellation: Tessellation<'_, SurfaceNet<'_>>) -> Value {
 fn mesh(nets: &[SurfaceNet<'_>], tolerance: I16F16) -> Result<Map<String, Value>, SubdivideError> {
     let mut table = vec![PatchTopology::default(); nets.len()];
     topology(nets, &mut table)?;
-    let tessellation = tessellate(nets, &table, tolerance)?;
+    let tessellation = tessellate(nets, &table, Tolerance::new(tolerance)?)?;
     let size = tessellation.size();
     let (mut vertices, mut triangles) = (vec![MeshVertex::BLANK; size.vertices], vec![[0; 3]; size.triangles]);
     let mut index = vec![0; 2 * size.index];

@@ -99,7 +99,7 @@ impl core::fmt::Display for LatticeError {
 impl core::error::Error for LatticeError {}
 
 /// The trailing zero bits that all coordinates share, at most 16.
-fn unused_bits(form: &Form<'_>) -> u32 {
+pub(super) fn unused_bits(form: &Form<'_>) -> u32 {
     let used = form.points().iter().fold(0, |bits, p| bits | p.x.to_bits() | p.y.to_bits() | p.z.to_bits());
     used.trailing_zeros().min(16)
 }

@@ -57,6 +57,11 @@ impl<'a> Form<'a> {
         Self { turn, degrees, steps, ..*self }
     }
 
+    /// Which way the net is turned; see [`turned`](Self::turned).
+    pub(crate) fn turn(&self) -> u8 {
+        self.turn
+    }
+
     pub(crate) fn points(&self) -> &'a [Point3] {
         self.points
     }

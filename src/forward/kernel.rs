@@ -127,7 +127,7 @@ impl<W: Word> Residual<W> {
     ///
     /// v lies in (−K·N, (K+1)·N), so v − ⌊N/2⌋ has its true sign in w bits. Multiples N·2^b with 2^b ≤ K stay below
     /// 2^(w−1), and compares are unsigned because K·N + N ≤ (2K+1)·N < 2^w.
-    #[inline]
+    #[inline(never)]
     fn settle(&self, v: W) -> (i32, W) {
         let negative = v.wrapping_minus(self.half) < W::ZERO;
         // −1 − v counts how far below zero v is; it loses as many N as v must gain, less one.
@@ -155,9 +155,17 @@ impl<W: Word> Kernel for Residual<W> {
     fn advance(&self, x: &mut i32, e: &mut W, d: W) {
         *e = e.wrapping_plus(d);
         if !e.below(self.scale) {
-            let (step, rest) = self.settle(*e);
-            *x = x.wrapping_add(step);
-            *e = rest;
+            // Most steps are of one unit: v − N or v + N is in range. Neither can be by wrapping, for (2K+1)·N < 2^w.
+            let less = e.wrapping_minus(self.scale);
+            let more = e.wrapping_plus(self.scale);
+            if less.below(self.scale) {
+                (*x, *e) = (x.wrapping_add(1), less);
+            } else if more.below(self.scale) {
+                (*x, *e) = (x.wrapping_sub(1), more);
+            } else {
+                let (step, rest) = self.settle(*e);
+                (*x, *e) = (x.wrapping_add(step), rest);
+            }
         }
     }
 

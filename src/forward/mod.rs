@@ -32,10 +32,12 @@ mod bounds;
 mod budget;
 mod curve;
 mod engine;
+mod estimate;
 mod form;
 mod kernel;
 mod lanes;
 mod lattice;
+mod piece;
 #[cfg(feature = "graphics")]
 mod plane;
 mod quotient;
@@ -51,8 +53,10 @@ pub use lattice::{Lattice, LatticePoint, LatticePoints, RowStep, RowSteps};
 pub use steps::{Sampling, Steps};
 
 pub(crate) use budget::MAX_STEPS;
-pub(crate) use form::Form;
+pub(crate) use estimate::Estimate;
+pub(crate) use form::{Form, Kind};
 pub(crate) use kernel::{Kernel, Residual};
+pub(crate) use piece::{PieceBudget, deepest_budget, piece_budget, piece_sampling, piece_turn};
 #[cfg(feature = "graphics")]
 pub(crate) use plane::{PlanePlan, PlaneWalk, PlaneWalker};
 pub(crate) use quotient::QuotientWalker;

@@ -232,7 +232,8 @@ impl<W: Word, const R: usize> QuotientWalker<W, R> {
         loop {
             let (mut i, j) = self.position;
             let mut row = self.row;
-            while visitor.wants_row(j) {
+            let wanted = visitor.wants_row(j);
+            while wanted {
                 visitor = visitor.point(&At { i, j, row: &row, weights: &self.weights });
                 if i == self.last_in_row {
                     break;

@@ -9,8 +9,8 @@ use crate::patch::{CurveNet, RationalCurveNet, SurfaceNet};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Steps {
-    r: u32,
-    s: u32,
+    pub(super) r: u32,
+    pub(super) s: u32,
 }
 
 /// How a surface is sampled without holes: a lattice, and the centres of its cells where that takes fewer points.

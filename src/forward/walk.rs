@@ -178,14 +178,14 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
         }
     }
 
-    /// Visits what is left of the row.
+    /// Visits what is left of the row, and leaves it at its end.
     #[inline(always)]
-    fn visit_row<V: Visit>(&self, mut visitor: V) -> V {
-        let mut row = self.row;
+    fn visit_row<V: Visit>(&mut self, mut visitor: V) -> V {
         let (mut i, j) = self.position;
+        let row = &mut self.row;
         loop {
             let point = core::array::from_fn(|axis| self.kernel.read(row.x[axis], row.e[axis]));
-            visitor = visitor.point(&At { i, j, point, row: &row, weights: &self.weights });
+            visitor = visitor.point(&At { i, j, point, row, weights: &self.weights });
             if i == self.last_in_row {
                 return visitor;
             }

@@ -18,6 +18,38 @@ pub(crate) const fn div_half_up(value: i128, divisor: i128) -> Option<i128> {
     (2 * value + divisor).checked_div_euclid(2 * divisor)
 }
 
+/// `ceil(value / divisor)`; `u128::MAX` for the divisor 0.
+#[inline(never)]
+pub(crate) const fn div_up(value: u128, divisor: u128) -> u128 {
+    match (value.checked_div(divisor), value.checked_rem(divisor)) {
+        (Some(quotient), Some(rest)) => quotient + (rest > 0) as u128,
+        _ => u128::MAX,
+    }
+}
+
+/// `ceil(value / 2^shift)` for a `shift` below 128.
+pub(crate) const fn shift_up(value: u128, shift: u32) -> u128 {
+    let whole = value >> shift;
+    whole + (whole << shift < value) as u128
+}
+
+/// `ceil(sqrt(value))`, exact for every value: a round for each bit of the root.
+#[inline(never)]
+pub(crate) const fn sqrt_up(value: u128) -> u128 {
+    let even = (127 - (value | 1).leading_zeros()) & !1;
+    let (mut root, mut rest, mut bit) = (0, value, 1 << even);
+    while bit != 0 {
+        let next = root + bit;
+        root >>= 1;
+        if rest >= next {
+            rest -= next;
+            root += bit;
+        }
+        bit >>= 2;
+    }
+    root + (rest > 0) as u128
+}
+
 /// Binomial coefficients: `BINOMIAL[n][k]` = C(n, k), n ≤ 16; 0 for k > n.
 pub(crate) const BINOMIAL: [[u16; 17]; 17] = {
     let mut table = [[0; 17]; 17];
@@ -64,6 +96,19 @@ mod tests {
         assert_eq!(div_half_up(-5, 2), Some(-2));
         assert_eq!(div_half_up(5, 2), Some(3));
         assert_eq!(div_half_up(1, 0), None);
+    }
+
+    #[test]
+    fn quotients_and_roots_go_up() {
+        assert_eq!([div_up(6, 3), div_up(7, 3), div_up(0, 3), div_up(1, 0)], [2, 3, 0, u128::MAX]);
+        assert_eq!([shift_up(8, 2), shift_up(9, 2), shift_up(0, 9), shift_up(5, 0), shift_up(1, 127)], [2, 3, 0, 5, 1]);
+        for root in [0, 1, 2, 3, 65_536, (1 << 32) - 1, 1 << 32, (1 << 63) - 1] {
+            let square: u128 = root * root;
+            assert_eq!(sqrt_up(square), root);
+            assert_eq!(sqrt_up(square + 1), root + 1);
+            assert_eq!(sqrt_up(square + 2 * root), root + u128::from(root > 0));
+        }
+        assert_eq!(sqrt_up(u128::MAX), 1 << 64);
     }
 
     #[test]

@@ -8,8 +8,12 @@ use crate::patch::Surface;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Statistics {
-    /// Patches walked; one that meets several bands counts in each.
+    /// Patches drawn; one that meets several bands counts in each, and so do its pieces and splits.
     pub patches: u32,
+    /// Pieces of patches that were sampled.
+    pub pieces: u32,
+    /// Splits of patches and pieces at a midpoint.
+    pub splits: u32,
     /// Lattice points generated.
     pub points: u64,
 }
@@ -17,6 +21,8 @@ pub struct Statistics {
 impl core::ops::AddAssign for Statistics {
     fn add_assign(&mut self, other: Self) {
         self.patches += other.patches;
+        self.pieces += other.pieces;
+        self.splits += other.splits;
         self.points += other.points;
     }
 }

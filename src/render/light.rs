@@ -110,7 +110,7 @@ pub(super) fn normal<W: Word>([u, v]: [[W; 3]; 2]) -> Option<[i32; 3]> {
     // Two products of 30-bit numbers stay below 2^61.
     let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
     let cross = if cross[2] > 0 { cross.map(|c| -c) } else { cross };
-    (cross != [0; 3]).then(|| truncate(cross, 15))
+    (cross[0] | cross[1] | cross[2] != 0).then(|| truncate(cross, 15))
 }
 
 /// The vector with its components shifted right by one common amount: from −2^bits to 2^bits − 1.

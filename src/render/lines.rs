@@ -1,7 +1,8 @@
 //! Lines: iso-parametric curves, control nets, normals.
 
+use super::brush::Canvas;
 use super::depth::DepthWindow;
-use super::pen::{Liner, normal_inside};
+use super::pen::{Ink, Pen, Rows, normal_inside};
 use super::plan::Plan;
 use super::style::{Lines, Style};
 use super::tile::{Paint, Tile};
@@ -19,6 +20,7 @@ pub(super) struct LineDrawing<'a, 'b, P: Paint> {
     pub(super) patch: usize,
     pub(super) net: SurfaceNet<'a>,
     pub(super) window: DepthWindow,
+    /// The points walked.
     pub(super) points: u64,
 }
 
@@ -70,18 +72,27 @@ impl<'a, P: Paint> LineDrawing<'a, '_, P> {
         }
     }
 
-    fn walk(&mut self, plan: &Plan<'_>, stride: u32) {
-        let fraction = Fraction::of(plan.budget.scale, self.window.bits);
-        let (patch, window) = (self.patch, self.window);
-        plan.walk(Liner { tile: self.tile, paint: self.paint, patch, window, fraction, stride });
+    fn walk(&mut self, plan: &Plan<'_>, rows: Rows) {
+        let (area, colour, depth) = self.tile.parts();
+        let window = self.window;
+        plan.draw(Pen {
+            area,
+            depth,
+            window,
+            fraction: Fraction::of(plan.budget.scale, window.bits),
+            ink: Ink::Line(window.bias()),
+            form: &plan.form,
+            rows,
+            points: &mut self.points,
+            brush: &mut Canvas { paint: self.paint, patch: self.patch, colour },
+        });
     }
 
     fn wire(&mut self, lines: Lines) {
         for turn in 0..families(self.net) {
             // Planned when the scene was made, so it cannot fail here.
             if let Ok((plan, stride)) = family(self.net, lines, turn) {
-                self.points += u64::from(lines.count() + 1) * (u64::from(plan.form.steps.0) + 1);
-                self.walk(&plan, stride);
+                self.walk(&plan, Rows::Every(stride));
             }
         }
     }
@@ -92,8 +103,7 @@ impl<'a, P: Paint> LineDrawing<'a, '_, P> {
         let steps = row_count(&Form::curve(net, 1));
         // N is at most 2^16·2^16 and K at most 2 in x and y: any pair of legal points fits 128 bits.
         if let Ok(plan) = Plan::of(Form::curve(net, steps), false) {
-            self.points += plan.form.point_count();
-            self.walk(&plan, 1);
+            self.walk(&plan, Rows::All);
         }
     }
 

@@ -35,14 +35,18 @@
 //! least 1/1000 of its maximum over the patch (within 2 with a [`Gloss`]). Where a tangent vanishes (the pole of a patch with a collapsed side)
 //! the normal 1/64 further inside is taken.
 
+mod brush;
+mod cull;
 mod depth;
 mod frame;
 mod light;
 mod lines;
 mod pen;
+mod pieces;
 mod plan;
 mod scene;
 mod style;
+mod tangents;
 mod tile;
 
 #[cfg(all(test, feature = "std"))]
@@ -53,7 +57,7 @@ pub use light::Light;
 pub use scene::Scene;
 #[cfg(feature = "styled")]
 pub(crate) use scene::fits_every_style;
-pub use style::{Gloss, Lines, Style};
+pub use style::{Cull, Gloss, Lines, Style};
 pub use tile::{Area, Fragment, Paint, Tile};
 
 use crate::forward::LatticeError;

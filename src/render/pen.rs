@@ -1,106 +1,121 @@
-//! What happens at a lattice point: clip, depth test, level, store.
+//! What happens at a lattice point: clip, depth test, and the brush where it is seen.
 
 use super::depth::DepthWindow;
-use super::light::{Light, normal};
-use super::style::Style;
-use super::tile::{Fragment, Paint, Tile};
+use super::light::normal;
+use super::tangents::row_range;
+use super::tile::{Area, is_nearest, is_seen, occlude};
 use crate::forward::{Form, Fraction, Site, Visit};
-use crate::num::Word;
 use crate::patch::{Barycentric, Parameter, SurfaceNet};
 
-/// Draws the points of one patch into a tile; `NORMALS`: its style needs them.
-pub(super) struct Pen<'a, 'b, P: Paint, const NORMALS: bool> {
-    pub(super) tile: &'a mut Tile<'b, P::Pixel>,
-    pub(super) paint: &'a P,
-    pub(super) light: &'a Light,
-    pub(super) style: Style,
-    pub(super) net: SurfaceNet<'a>,
-    pub(super) form: &'a Form<'a>,
-    pub(super) patch: usize,
-    pub(super) window: DepthWindow,
-    pub(super) fraction: Fraction,
+/// What points leave in a tile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ink {
+    /// Colour where a point is nearest.
+    Fill,
+    /// Depth and nothing else: what hides lines.
+    Occlude,
+    /// Colour where a point of a line is nearer than other lines, and than surfaces this much behind it.
+    Line(u16),
 }
 
-impl<P: Paint, const NORMALS: bool> Pen<'_, '_, P, NORMALS> {
-    /// The level at lattice point (i, j), from its tangents.
-    fn shade<W: Word>(&self, i: u32, j: u32, tangents: [[W; 3]; 2]) -> u8 {
-        let facing = [0, 0, -1];
-        let n = normal(tangents).or_else(|| normal_inside(self.net, self.form, i, j)).unwrap_or(facing);
-        match self.style {
-            Style::Glossy(gloss) => self.light.glossy(n, gloss),
-            _ => self.light.level(n),
-        }
+/// A point that is seen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spot {
+    pub(super) i: u32,
+    pub(super) j: u32,
+    pub(super) x: i32,
+    pub(super) y: i32,
+    pub(super) index: usize,
+    pub(super) depth: u16,
+}
+
+/// What colours points that are seen.
+pub(super) trait Brush {
+    /// Colours a point; `normal` comes from a walk that knows it, `None` there where the tangents span no plane.
+    fn dab(&mut self, spot: Spot, normal: Option<Option<[i32; 3]>>);
+}
+
+/// Draws the points of one lattice into a tile. One type for all colours: what a walker is made for.
+pub(super) struct Pen<'p, const NORMALS: bool> {
+    pub(super) area: Area,
+    pub(super) depth: &'p mut [u16],
+    pub(super) window: DepthWindow,
+    pub(super) fraction: Fraction,
+    pub(super) ink: Ink,
+    pub(super) form: &'p Form<'p>,
+    pub(super) rows: Rows,
+    pub(super) points: &'p mut u64,
+    pub(super) brush: &'p mut dyn Brush,
+}
+
+impl<'p> Pen<'p, false> {
+    /// The pen for walks that know normals.
+    pub(super) fn with_normals(self) -> Pen<'p, true> {
+        let Self { area, depth, window, fraction, ink, form, rows, points, brush } = self;
+        Pen { area, depth, window, fraction, ink, form, rows, points, brush }
     }
 }
 
-impl<P: Paint, const NORMALS: bool> Visit for Pen<'_, '_, P, NORMALS> {
+impl<const NORMALS: bool> Visit for Pen<'_, NORMALS> {
     const TANGENTS: bool = NORMALS;
 
-    #[inline(always)]
-    fn point<S: Site>(self, at: &S) -> Self {
-        let [x, y, z] = at.point();
-        if let Some(index) = self.tile.index(x, y) {
-            let depth = self.window.depth(z, at.below(2, &self.fraction));
-            if self.tile.is_nearest(index, depth) {
-                let shade = match self.style {
-                    _ if NORMALS => self.shade(at.i(), at.j(), at.tangents()),
-                    Style::DepthCued { near, far } => self.window.cue(depth, near, far),
-                    _ => u8::MAX,
-                };
-                let pixel = self.paint.pixel(Fragment { x, y, patch: self.patch, shade });
-                self.tile.set(index, pixel);
-            }
+    fn wants_row(&mut self, j: u32) -> bool {
+        let wanted = match self.rows {
+            Rows::All => true,
+            Rows::Every(stride) => j.checked_rem(stride) == Some(0),
+            Rows::In(band) => meets(self.form, j, band),
+        };
+        if wanted {
+            *self.points += u64::from(self.form.last_in_row(j)) + 1;
         }
-        self
-    }
-}
-
-/// Leaves a patch's depth and nothing else: what hides lines.
-pub(super) struct Occluder<'a, 'b, P> {
-    pub(super) tile: &'a mut Tile<'b, P>,
-    pub(super) window: DepthWindow,
-    pub(super) fraction: Fraction,
-}
-
-impl<P: Copy> Visit for Occluder<'_, '_, P> {
-    #[inline(always)]
-    fn point<S: Site>(self, at: &S) -> Self {
-        let [x, y, z] = at.point();
-        if let Some(index) = self.tile.index(x, y) {
-            let depth = self.window.depth(z, at.below(2, &self.fraction));
-            self.tile.occlude(index, depth);
-        }
-        self
-    }
-}
-
-/// Draws the rows of a lattice whose number is a multiple of `stride` as lines.
-pub(super) struct Liner<'a, 'b, P: Paint> {
-    pub(super) tile: &'a mut Tile<'b, P::Pixel>,
-    pub(super) paint: &'a P,
-    pub(super) patch: usize,
-    pub(super) window: DepthWindow,
-    pub(super) fraction: Fraction,
-    pub(super) stride: u32,
-}
-
-impl<P: Paint> Visit for Liner<'_, '_, P> {
-    fn wants_row(&self, j: u32) -> bool {
-        j.checked_rem(self.stride) == Some(0)
+        wanted
     }
 
     #[inline(always)]
     fn point<S: Site>(self, at: &S) -> Self {
         let [x, y, z] = at.point();
-        if let Some(index) = self.tile.index(x, y) {
-            let depth = self.window.depth(z, at.below(2, &self.fraction));
-            if self.tile.is_seen(index, depth, self.window.bias()) {
-                let pixel = self.paint.pixel(Fragment { x, y, patch: self.patch, shade: u8::MAX });
-                self.tile.set(index, pixel);
-            }
+        let Some(index) = self.area.index(x, y) else { return self };
+        let Some(stored) = self.depth.get_mut(index) else { return self };
+        let depth = self.window.depth(z, at.below(2, &self.fraction));
+        let seen = match self.ink {
+            Ink::Fill => is_nearest(stored, depth),
+            Ink::Occlude => occlude(stored, depth),
+            Ink::Line(bias) => is_seen(stored, depth, bias),
+        };
+        if seen {
+            let spot = Spot { i: at.i(), j: at.j(), x, y, index, depth };
+            let normal = if NORMALS { Some(normal(at.tangents())) } else { None };
+            self.brush.dab(spot, normal);
         }
         self
     }
+}
+
+/// Which rows of a lattice are walked.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Rows {
+    All,
+    /// Those whose number is a multiple.
+    Every(u32),
+    /// Those that can have points in these pixel rows: the first, and the one after the last.
+    In((i32, i32)),
+}
+
+impl Rows {
+    /// All rows where the net's box lies inside the band, or the net is rational.
+    pub(super) fn in_band(form: &Form<'_>, band: (i32, i32)) -> Self {
+        let inside = |y: i32| i64::from(y) >= i64::from(band.0) << 16 && i64::from(y) < (i64::from(band.1) - 1) << 16;
+        let all = form.weights().is_some() || form.points().iter().all(|p| inside(p.y.to_bits()));
+        if all { Self::All } else { Self::In(band) }
+    }
+}
+
+/// Whether the control values of row `j` leave it a chance to meet the band.
+fn meets(form: &Form<'_>, j: u32, band: (i32, i32)) -> bool {
+    let (low, high) = row_range(form, j);
+    // A coordinate y is drawn in row floor(y + 1/2); 8 units are the margin of the range.
+    let half = 1_i64 << 15;
+    high + half + 8 >= i64::from(band.0) << 16 && low + half - 8 < i64::from(band.1) << 16
 }
 
 /// The normal of a patch 1/64 of the way from lattice point (i, j) inwards: what stands in where a tangent vanishes.
@@ -113,9 +128,11 @@ pub(super) fn normal_inside(net: SurfaceNet<'_>, form: &Form<'_>, i: u32, j: u32
         1024 + doubled.checked_div(2 * u64::from(steps)).unwrap_or(0) as u32
     };
     let (n_r, n_s) = form.steps;
+    let turn = form.turn();
     let tangents = if net.is_triangle() {
-        let (u, v) = (part(i, n_r, 61 * 1024), part(j, n_s, 61 * 1024));
-        let at = Barycentric::new(u, v, (1_u32 << 16).saturating_sub(u + v)).ok()?;
+        let (a, b) = (part(i, n_r, 61 * 1024), part(j, n_s, 61 * 1024));
+        let [u, v, w] = unturned(turn, [a, b, (1_u32 << 16).saturating_sub(a + b)]);
+        let at = Barycentric::new(u, v, w).ok()?;
         match net {
             SurfaceNet::Triangle(net) => net.partials(at),
             SurfaceNet::RationalTriangle(net) => net.partials(at)?,
@@ -123,7 +140,8 @@ pub(super) fn normal_inside(net: SurfaceNet<'_>, form: &Form<'_>, i: u32, j: u32
         }
     } else {
         let at = |index, steps| Parameter::new(part(index, steps, 62 * 1024), 1 << 16).ok();
-        let (r, s) = (at(i, n_r)?, at(j, n_s)?);
+        let (a, b) = (at(i, n_r)?, at(j, n_s)?);
+        let (r, s) = if turn == 0 { (a, b) } else { (b, a) };
         match net {
             SurfaceNet::Tensor(net) => net.partials(r, s),
             SurfaceNet::RationalTensor(net) => net.partials(r, s)?,
@@ -131,4 +149,13 @@ pub(super) fn normal_inside(net: SurfaceNet<'_>, form: &Form<'_>, i: u32, j: u32
         }
     };
     normal(tangents.map(|t| t.to_array().map(|c| c.to_bits())))
+}
+
+/// Barycentric coordinates (u, v, w) from those of a turned triangle.
+pub(super) fn unturned<T>(turn: u8, [a, b, c]: [T; 3]) -> [T; 3] {
+    match turn {
+        0 => [a, b, c],
+        1 => [b, c, a],
+        _ => [c, a, b],
+    }
 }

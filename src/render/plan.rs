@@ -1,16 +1,22 @@
 //! Which lattices a patch is drawn by, and with which walker.
 
-use super::style::Style;
+use super::pen::Pen;
+use super::pieces::DEPTH;
 use crate::forward::{
-    Budget, Form, Kernel, LatticeError, QuotientWalker, Residual, Sampling, Steps, Visit, Walker, tangent_bits,
+    Accumulator, Budget, Form, Kernel, LatticeError, PieceBudget, QuotientWalker, Residual, Sampling, Visit, Walker,
+    deepest_budget, piece_budget, piece_sampling, piece_turn, tangent_bits,
 };
+use crate::geometry::Point3;
 use crate::num::Word;
 use crate::patch::SurfaceNet;
+use crate::subdivide::part_net;
 
-/// Which walker draws a patch. Order 4 holds cubics, 9 everything.
+/// Which walker draws a lattice. Order 4 holds cubics, 6 quintics, 9 everything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Width {
+    Cubic32,
     Cubic64,
+    Quintic64,
     Full64,
     Full128,
 }
@@ -31,6 +37,7 @@ impl<'a> Plan<'a> {
         let bits = if normals { tangent_bits(&form, &budget).max(points) } else { points };
         let width = match (bits, form.degree()) {
             (..=64, ..4) => Width::Cubic64,
+            (..=64, ..6) => Width::Quintic64,
             (..=64, _) => Width::Full64,
             (..=128, _) => Width::Full128,
             _ => {
@@ -41,14 +48,32 @@ impl<'a> Plan<'a> {
         Ok(Self { form, budget, width })
     }
 
-    /// Walks the lattice.
+    /// Walks the lattice with any visitor, which may want tangents.
+    #[cfg(all(test, feature = "std"))]
     pub(super) fn walk<V: Visit>(&self, visitor: V) {
         match (self.width, self.form.weights().is_some()) {
+            (Width::Cubic32, _) => {}
             (Width::Cubic64, false) => run::<_, _, 4>(Residual::<i64>::of(&self.budget), self, visitor),
+            (Width::Quintic64, false) => run::<_, _, 6>(Residual::<i64>::of(&self.budget), self, visitor),
             (Width::Full64, false) => run::<_, _, 9>(Residual::<i64>::of(&self.budget), self, visitor),
             (Width::Full128, false) => run::<_, _, 9>(Residual::<i128>::of(&self.budget), self, visitor),
             (Width::Cubic64, true) => run_quotient::<i64, _, 4>(self, visitor),
             (_, true) => run_quotient::<i128, _, 9>(self, visitor),
+        }
+    }
+}
+
+impl Plan<'_> {
+    /// Walks the lattice with a pen.
+    pub(super) fn draw(&self, pen: Pen<'_, false>) {
+        match (self.width, self.form.weights().is_some()) {
+            (Width::Cubic32, false) => run::<_, _, 4>(Residual::<i32>::of(&self.budget), self, pen),
+            (Width::Cubic64, false) => run::<_, _, 4>(Residual::<i64>::of(&self.budget), self, pen),
+            (Width::Quintic64, false) => run::<_, _, 6>(Residual::<i64>::of(&self.budget), self, pen),
+            (Width::Full64, false) => run::<_, _, 9>(Residual::<i64>::of(&self.budget), self, pen),
+            (Width::Full128, false) => run::<_, _, 9>(Residual::<i128>::of(&self.budget), self, pen),
+            (Width::Cubic64, true) => run_quotient::<i64, _, 4>(self, pen.with_normals()),
+            (_, true) => run_quotient::<i128, _, 9>(self, pen.with_normals()),
         }
     }
 }
@@ -65,19 +90,105 @@ fn run_quotient<W: Word, V: Visit, const R: usize>(plan: &Plan<'_>, visitor: V) 
     QuotientWalker::<W, R>::new(&plan.form, &plan.budget).visit(visitor);
 }
 
-/// The hole-free lattices of a patch: one, or a coarser one and its cells' centres where that takes fewer points and
-/// no wider accumulator.
-pub(super) fn fill_plans<'a>(net: SurfaceNet<'a>, style: Style) -> Result<(Plan<'a>, Option<Plan<'a>>), LatticeError> {
-    let normals = style.needs_normals();
-    let form = |steps: Steps| Form::surface(net, (steps.r(), steps.s()));
-    let sampling = Sampling::cheapest(net);
-    if sampling.centres {
-        let coarse = form(sampling.steps);
-        if let (Ok(corners), Ok(centres)) = (Plan::of(coarse, normals), Plan::of(coarse.centres(), normals))
-            && centres.width != Width::Full128
-        {
-            return Ok((corners, Some(centres)));
+/// How a piece is walked: one lattice, or a coarser one and its cells' centres.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PiecePlan {
+    sampling: Sampling,
+    corners: (PieceBudget, Width),
+    centres: Option<(PieceBudget, Width)>,
+}
+
+impl PiecePlan {
+    /// The plan for a piece at this sampling; without the centres, at more steps, where they need more than 64 bits.
+    ///
+    /// # Errors
+    /// [`LatticeError::Budget`] where 128 bits are too few, [`LatticeError::Steps`] above 2^24 steps.
+    pub(super) fn of(net: SurfaceNet<'_>, sampling: Sampling) -> Result<Self, LatticeError> {
+        let mut sampling = sampling;
+        if sampling.centres {
+            let plan = Self::at(net, sampling);
+            if plan.is_ok_and(|plan| plan.centres.is_some_and(|(_, width)| width != Width::Full128)) {
+                return plan;
+            }
+            sampling = piece_sampling(net, false);
+        }
+        Self::at(net, sampling)
+    }
+
+    fn at(net: SurfaceNet<'_>, sampling: Sampling) -> Result<Self, LatticeError> {
+        let steps = (sampling.steps.r(), sampling.steps.s());
+        let form = Form::surface(net, steps);
+        let corners = lattice(net, &form)?;
+        let centres = if sampling.centres { Some(lattice(net, &form.centres())?) } else { None };
+        Ok(Self { sampling, corners, centres })
+    }
+
+    /// Whether everything fits 64 bits.
+    fn is_short(&self) -> bool {
+        let short = |(_, width): (PieceBudget, Width)| width != Width::Full128;
+        short(self.corners) && self.centres.is_none_or(short)
+    }
+
+    /// Calls `f` for each lattice of the piece, and with how often its z is halved; `room` holds as many points as the net.
+    pub(super) fn each_lattice(&self, net: SurfaceNet<'_>, room: &mut [Point3], mut f: impl FnMut(Plan<'_>, u32)) {
+        let turn = piece_turn(&net, self.sampling);
+        let (r, s) = (self.sampling.steps.r(), self.sampling.steps.s());
+        let steps = if turn == 1 { (s, r) } else { (r, s) };
+        for (lattice, centred) in [(Some(self.corners), false), (self.centres, true)] {
+            let Some((PieceBudget { budget, halvings }, width)) = lattice else { continue };
+            let rounded = round_net(net, (budget.fraction_bits, halvings), room);
+            let form = Form::surface(rounded, (1, 1)).turned(turn, steps);
+            f(Plan { form: if centred { form.centres() } else { form }, budget, width }, halvings);
         }
     }
-    Ok((Plan::of(form(Steps::hole_free(net)), normals)?, None))
+}
+
+/// The net with coordinates rounded half up to so many fraction bits, within 2^-(bits + 1), and z halved first.
+fn round_net<'a>(net: SurfaceNet<'a>, (bits, halvings): (u32, u32), room: &'a mut [Point3]) -> SurfaceNet<'a> {
+    let (points, drop) = (net.points(), 16_u32.saturating_sub(bits));
+    if net.weights().is_some() || drop + halvings == 0 || room.len() < points.len() {
+        return net;
+    }
+    let half = (1 << drop) >> 1;
+    for (to, from) in room.iter_mut().zip(points) {
+        let round = |c: i32| (c + half) >> drop << drop;
+        let z = (from.z.to_bits() >> halvings) + half;
+        *to = Point3::from_bits(round(from.x.to_bits()), round(from.y.to_bits()), z >> drop << drop);
+    }
+    part_net(net, room, &[])
+}
+
+/// Whether a piece need not be split to be walked: a polynomial one in 64 bits, a rational one at all.
+pub(super) fn fits(net: SurfaceNet<'_>, sampling: Sampling) -> bool {
+    PiecePlan::of(net, sampling).is_ok_and(|plan| plan.is_short() || net.weights().is_some())
+}
+
+/// The budget of a lattice of a piece and the walker that suits it.
+fn lattice(net: SurfaceNet<'_>, form: &Form<'_>) -> Result<(PieceBudget, Width), LatticeError> {
+    if form.weights().is_some() {
+        // Tangents, where they are wanted, were checked with the scene.
+        let plan = Plan::of(*form, true).or_else(|_| Plan::of(*form, false))?;
+        return Ok((PieceBudget { budget: plan.budget, halvings: 0 }, plan.width));
+    }
+    let budget = piece_budget(net, form)?;
+    let width = match (budget.budget.accumulator, form.degree()) {
+        (Accumulator::I32, _) => Width::Cubic32,
+        (Accumulator::I64, ..4) => Width::Cubic64,
+        (Accumulator::I64, ..6) => Width::Quintic64,
+        (Accumulator::I64, _) => Width::Full64,
+        (Accumulator::I128, _) => Width::Full128,
+    };
+    Ok((budget, width))
+}
+
+/// Checks that every piece of a patch can be drawn.
+///
+/// # Errors
+/// What the lattice of the patch (rational: undivided; polynomial: split as deep as it goes) does not fit.
+pub(super) fn check_pieces(net: SurfaceNet<'_>, normals: bool) -> Result<(), LatticeError> {
+    let sampling = piece_sampling(net, false);
+    if net.weights().is_some() {
+        return Plan::of(Form::surface(net, (sampling.steps.r(), sampling.steps.s())), normals).map(drop);
+    }
+    deepest_budget(net, sampling, DEPTH as u32)
 }

@@ -1,17 +1,21 @@
 //! Scenes: what is drawn, checked once.
 
+use super::brush::{Canvas, Shader, Shading};
+use super::cull::faces_away;
 use super::depth::DepthWindow;
 use super::light::Light;
 #[cfg(feature = "styled")]
 use super::lines::any_family;
 use super::lines::{LineDrawing, families, family};
-use super::pen::{Occluder, Pen};
-use super::plan::fill_plans;
-use super::style::Style;
+use super::pen::{Ink, Pen, Rows};
+use super::pieces::{Pieces, each_piece};
+use super::plan::{PiecePlan, check_pieces};
+use super::style::{Cull, Style};
+use super::tangents::Tangents;
 use super::tile::{Area, Paint, Tile};
 use super::{RenderError, Statistics};
-use crate::forward::{Fraction, LatticeError};
-use crate::geometry::Bounds;
+use crate::forward::{Fraction, LatticeError, Sampling};
+use crate::geometry::{Bounds, Point3};
 use crate::num::{Coord, I16F16};
 use crate::patch::{Surface, SurfaceNet};
 
@@ -39,6 +43,21 @@ impl PixelBox {
     }
 }
 
+/// Whether the box of a piece has pixels in an area.
+fn meets(piece: SurfaceNet<'_>, area: &Area) -> bool {
+    let (mut x, mut y) = ((i32::MAX, i32::MIN), (i32::MAX, i32::MIN));
+    for p in piece.points() {
+        x = (x.0.min(p.x.to_bits()), x.1.max(p.x.to_bits()));
+        y = (y.0.min(p.y.to_bits()), y.1.max(p.y.to_bits()));
+    }
+    let overlaps = |(low, high): (i32, i32), start: i32, length: u32| {
+        // Rounded half up; legal coordinates leave room.
+        let [low, high] = [low, high].map(|c| (c + (1 << 15)) >> 16);
+        high >= start && i64::from(low) < i64::from(start) + i64::from(length)
+    };
+    overlaps(y, area.y, area.height) && overlaps(x, area.x, area.width)
+}
+
 /// Patches in screen coordinates, a light and a style; checked once, so that drawing cannot fail.
 ///
 /// ```
@@ -57,6 +76,7 @@ pub struct Scene<'a, S> {
     patches: &'a [S],
     light: Light,
     style: Style,
+    cull: Cull,
     window: DepthWindow,
     pixels: Option<PixelBox>,
 }
@@ -84,7 +104,14 @@ impl<'a, S: Surface> Scene<'a, S> {
         }
         let pixels = all.map(|b| PixelBox::of(&b));
         let window = pixels.map_or(DepthWindow::of(0, 0), |p| DepthWindow::of(p.min[2], p.max[2]));
-        Ok(Self { patches, light, style, window, pixels })
+        Ok(Self { patches, light, style, cull: Cull::None, window, pixels })
+    }
+
+    /// The scene with these faces drawn. Culling takes part in filling and in hiding lines; lines themselves are drawn on
+    /// either side.
+    #[must_use]
+    pub const fn with_cull(self, cull: Cull) -> Self {
+        Self { cull, ..self }
     }
 
     /// The patches.
@@ -113,7 +140,9 @@ impl<'a, S: Surface> Scene<'a, S> {
     pub fn draw<P: Paint>(&self, tile: &mut Tile<'_, P::Pixel>, paint: &P) -> Statistics {
         let mut statistics = Statistics::default();
         if self.style.lines() == Some(true) {
-            self.each_visible(tile, |tile, _, net| self.occlude(tile, net, &mut statistics));
+            self.each_visible(tile, |tile, patch, net| {
+                self.fill(tile, paint, (patch, net), Ink::Occlude, &mut statistics);
+            });
         }
         self.each_visible(tile, |tile, patch, net| {
             statistics.patches += 1;
@@ -121,10 +150,8 @@ impl<'a, S: Surface> Scene<'a, S> {
                 let mut lines = LineDrawing { tile, paint, patch, net, window: self.window, points: 0 };
                 lines.draw(self.style);
                 statistics.points += lines.points;
-            } else if self.style.needs_normals() {
-                self.fill::<P, true>(tile, paint, (patch, net), &mut statistics);
             } else {
-                self.fill::<P, false>(tile, paint, (patch, net), &mut statistics);
+                self.fill(tile, paint, (patch, net), Ink::Fill, &mut statistics);
             }
         });
         statistics
@@ -144,38 +171,63 @@ impl<'a, S: Surface> Scene<'a, S> {
         }
     }
 
-    fn fill<P: Paint, const NORMALS: bool>(
+    /// Draws the pieces of one patch that meet the tile.
+    fn fill<P: Paint>(
         &self,
         tile: &mut Tile<'_, P::Pixel>,
         paint: &P,
         (patch, net): (usize, SurfaceNet<'a>),
+        ink: Ink,
         statistics: &mut Statistics,
     ) {
-        // Planned in `new`, so it cannot fail here.
-        let Ok((first, second)) = fill_plans(net, self.style) else { return };
-        for plan in [Some(first), second].into_iter().flatten() {
-            statistics.points += plan.form.point_count();
-            plan.walk(Pen::<P, NORMALS> {
-                tile,
-                paint,
-                light: &self.light,
-                style: self.style,
-                net,
-                form: &plan.form,
-                patch,
-                window: self.window,
-                fraction: Fraction::of(plan.budget.scale, self.window.bits),
-            });
-        }
+        let shading = Shading { light: &self.light, style: self.style, window: self.window };
+        each_piece(net, &mut Filling { shading, cull: self.cull, tile, paint, patch, inward: false, ink, statistics });
+    }
+}
+
+/// The pieces of one patch on their way into a tile.
+struct Filling<'s, 'b, 't, P: Paint> {
+    shading: Shading<'s>,
+    cull: Cull,
+    tile: &'t mut Tile<'b, P::Pixel>,
+    paint: &'s P,
+    patch: usize,
+    inward: bool,
+    ink: Ink,
+    statistics: &'t mut Statistics,
+}
+
+impl<P: Paint> Pieces for Filling<'_, '_, '_, P> {
+    fn wants(&mut self, piece: SurfaceNet<'_>) -> bool {
+        meets(piece, &self.tile.area()) && (self.cull == Cull::None || !faces_away(&piece, self.inward))
     }
 
-    fn occlude<C: Copy>(&self, tile: &mut Tile<'_, C>, net: SurfaceNet<'a>, statistics: &mut Statistics) {
-        let Ok((first, second)) = fill_plans(net, self.style) else { return };
-        for plan in [Some(first), second].into_iter().flatten() {
-            statistics.points += plan.form.point_count();
-            let fraction = Fraction::of(plan.budget.scale, self.window.bits);
-            plan.walk(Occluder { tile, window: self.window, fraction });
-        }
+    fn piece(&mut self, piece: SurfaceNet<'_>, sampling: Sampling, room: &mut [Point3]) {
+        // Checked in `new`, so it cannot fail here.
+        let Ok(plan) = PiecePlan::of(piece, sampling) else { return };
+        self.statistics.pieces += 1;
+        let (area, colour, depth) = self.tile.parts();
+        let band = (area.y, area.y.saturating_add_unsigned(area.height));
+        plan.each_lattice(piece, room, |plan, halvings| {
+            let (form, window) = (&plan.form, self.shading.window.halved(halvings));
+            let canvas = Canvas { paint: self.paint, patch: self.patch, colour };
+            let tangents = Tangents::new(piece, form);
+            plan.draw(Pen {
+                area,
+                depth,
+                window,
+                fraction: Fraction::of(plan.budget.scale, window.bits),
+                ink: self.ink,
+                form,
+                rows: Rows::in_band(form, band),
+                points: &mut self.statistics.points,
+                brush: &mut Shader { shading: self.shading, canvas, net: piece, form, tangents },
+            });
+        });
+    }
+
+    fn split(&mut self) {
+        self.statistics.splits += 1;
     }
 }
 
@@ -184,8 +236,7 @@ impl<'a, S: Surface> Scene<'a, S> {
 pub(crate) fn fits_every_style<S: Surface>(patches: &[S]) -> Result<(), RenderError> {
     for (index, patch) in patches.iter().enumerate() {
         let net = patch.surface();
-        let fits =
-            fill_plans(net, Style::Shaded).and_then(|_| fill_plans(net, Style::Flat)).and_then(|_| any_family(net));
+        let fits = check_pieces(net, true).and_then(|()| any_family(net));
         fits.map_err(|error| RenderError::Patch { index, error })?;
     }
     Ok(())
@@ -194,7 +245,7 @@ pub(crate) fn fits_every_style<S: Surface>(patches: &[S]) -> Result<(), RenderEr
 /// Every lattice that the style will need fits the engine.
 fn check(net: SurfaceNet<'_>, style: Style) -> Result<(), LatticeError> {
     if style.lines() != Some(false) {
-        fill_plans(net, style)?;
+        check_pieces(net, style.needs_normals())?;
     }
     if let Style::Wire(lines) = style {
         for turn in 0..families(net) {

@@ -35,6 +35,20 @@ pub enum Style {
     },
 }
 
+/// Which faces of patches are drawn.
+///
+/// The outward normal is S_r × S_s (S_u × S_v for triangles), unless the scene's table of patches says that it points
+/// inwards.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Cull {
+    /// Both: patches are two-sided.
+    #[default]
+    None,
+    /// Pieces of patches that face away from the viewer everywhere are left out; nothing that faces the viewer is.
+    Back,
+}
+
 /// A highlight: specular·max(0, N·H)^exponent is added to the level, with H halfway between light and viewer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

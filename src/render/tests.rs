@@ -2,7 +2,9 @@
 #![allow(clippy::unwrap_used, clippy::disallowed_types, clippy::float_arithmetic)]
 
 use super::light::normal;
+use super::pen::unturned;
 use super::plan::Plan;
+use super::tangents::Tangents;
 use super::{Gloss, Light};
 use crate::forward::{Form, Site, Steps, Visit};
 use crate::num::I16F16;
@@ -34,12 +36,42 @@ fn cross([a, b]: [[f64; 3]; 2]) -> f64 {
 /// The largest differences in levels, plain and glossy, where |S_r × S_s| ≥ 1e-3 of its maximum, and the points.
 fn worst(net: SurfaceNet<'_>, light: Light) -> ([f64; 2], usize) {
     let steps = Steps::hole_free(net);
-    let plan = Plan::of(Form::surface(net, (steps.r(), steps.s())), true).unwrap();
+    let form = Form::surface(net, (steps.r(), steps.s()));
     let mut levels = Vec::new();
-    plan.walk(Levels(light, &mut levels));
+    Plan::of(form, true).unwrap().walk(Levels(light, &mut levels));
+    let mut worst = compare(net, light, (steps.r(), steps.s()), &levels);
+    // The tangents of pieces, of the lattice as it is and turned.
+    for turn in 0..if net.weights().is_some() { 0 } else { 2 + u8::from(net.is_triangle()) } {
+        let swapped = !net.is_triangle() && turn == 1;
+        let turned = form.turned(turn, if swapped { (steps.s(), steps.r()) } else { (steps.r(), steps.s()) });
+        let mut tangents = Tangents::new(net, &turned);
+        let mut levels = Vec::new();
+        for j in 0..=turned.last_row() {
+            for i in 0..=turned.last_in_row(j) {
+                let Some(normal) = normal(tangents.at(i, j)) else { continue };
+                let [u, v, _] = unturned(turn, [i, j, steps.r().wrapping_sub(i + j)]);
+                let (u, v) = if net.is_triangle() {
+                    (u, v)
+                } else if swapped {
+                    (j, i)
+                } else {
+                    (i, j)
+                };
+                levels.push((u, v, [light.level(normal), light.glossy(normal, GLOSS)]));
+            }
+        }
+        let (error, points) = compare(net, light, (steps.r(), steps.s()), &levels);
+        assert_eq!(points, worst.1);
+        worst.0 = [worst.0[0].max(error[0]), worst.0[1].max(error[1])];
+    }
+    worst
+}
+
+/// The largest differences of levels at (i/n_r, j/n_s) from the reference.
+fn compare(net: SurfaceNet<'_>, light: Light, steps: (u32, u32), levels: &[(u32, u32, [u8; 2])]) -> ([f64; 2], usize) {
     let direction = light.direction().map(|c| f64::from(c) / 32768.0);
     let ambient = f64::from(light.ambient()) / 255.0;
-    let at = |i: u32, j: u32| (f64::from(i) / f64::from(steps.r()), f64::from(j) / f64::from(steps.s()));
+    let at = |i: u32, j: u32| (f64::from(i) / f64::from(steps.0), f64::from(j) / f64::from(steps.1));
     let areas: Vec<f64> =
         levels.iter().map(|(i, j, _)| cross(reference::partials(net, at(*i, *j).0, at(*i, *j).1))).collect();
     let least = areas.iter().fold(0.0_f64, |a, b| a.max(*b)) * 1e-3;

@@ -28,6 +28,13 @@ impl Area {
         const SIDES: u32 = 1 << 15;
         self.width > 0 && self.width <= SIDES && self.height > 0 && self.height <= SIDES
     }
+
+    /// The index of a pixel inside, row by row.
+    #[inline(always)]
+    pub(super) fn index(&self, x: i32, y: i32) -> Option<usize> {
+        let (column, row) = (x.wrapping_sub(self.x) as u32, y.wrapping_sub(self.y) as u32);
+        (column < self.width && row < self.height).then(|| row as usize * self.width as usize + column as usize)
+    }
 }
 
 /// What a [`Paint`] sees: a pixel on its way to the buffer.
@@ -125,54 +132,40 @@ impl<'b, P: Copy> Tile<'b, P> {
     /// Whether something was drawn to the pixel (x, y).
     #[must_use]
     pub fn covers(&self, x: i32, y: i32) -> bool {
-        self.index(x, y).is_some_and(|index| self.is_covered(index))
+        self.area.index(x, y).is_some_and(|index| self.is_covered(index))
     }
 
-    /// The index of a pixel inside.
-    #[inline(always)]
-    pub(super) fn index(&self, x: i32, y: i32) -> Option<usize> {
-        let (column, row) = (x.wrapping_sub(self.area.x) as u32, y.wrapping_sub(self.area.y) as u32);
-        (column < self.area.width && row < self.area.height)
-            .then(|| row as usize * self.area.width as usize + column as usize)
+    /// The rectangle, the colours and the depths.
+    pub(super) fn parts(&mut self) -> (Area, &mut [P], &mut [u16]) {
+        (self.area, self.colour, self.depth)
     }
+}
 
-    /// Whether `depth` is nearer than what is at the index; it is stored then, as drawn.
-    #[inline(always)]
-    pub(super) fn is_nearest(&mut self, index: usize, depth: u16) -> bool {
-        match self.depth.get_mut(index) {
-            Some(stored) if depth < *stored >> 1 => {
-                *stored = depth << 1;
-                true
-            }
-            _ => false,
-        }
+/// Whether `depth` is nearer than what is stored; it is stored then, as drawn.
+#[inline(always)]
+pub(super) fn is_nearest(stored: &mut u16, depth: u16) -> bool {
+    let nearer = depth < *stored >> 1;
+    if nearer {
+        *stored = depth << 1;
     }
+    nearer
+}
 
-    /// Stores `depth` without a colour where it is nearer.
-    #[inline(always)]
-    pub(super) fn occlude(&mut self, index: usize, depth: u16) {
-        if let Some(stored) = self.depth.get_mut(index)
-            && depth < *stored >> 1
-        {
-            *stored = (depth << 1) | 1;
-        }
+/// Stores `depth` without a colour where it is nearer; nothing is to be coloured.
+#[inline(always)]
+pub(super) fn occlude(stored: &mut u16, depth: u16) -> bool {
+    if depth < *stored >> 1 {
+        *stored = (depth << 1) | 1;
     }
+    false
+}
 
-    /// Whether a line at `depth` is seen: nearer than any line, at most `bias` behind a surface. Stored then.
-    #[inline(always)]
-    pub(super) fn is_seen(&mut self, index: usize, depth: u16, bias: u16) -> bool {
-        let Some(stored) = self.depth.get_mut(index) else { return false };
-        let seen = if *stored & 1 == 0 { depth < *stored >> 1 } else { depth.saturating_sub(bias) <= *stored >> 1 };
-        if seen {
-            *stored = depth << 1;
-        }
-        seen
+/// Whether a line at `depth` is seen: nearer than any line, at most `bias` behind a surface. Stored then.
+#[inline(always)]
+pub(super) fn is_seen(stored: &mut u16, depth: u16, bias: u16) -> bool {
+    let seen = if *stored & 1 == 0 { depth < *stored >> 1 } else { depth.saturating_sub(bias) <= *stored >> 1 };
+    if seen {
+        *stored = depth << 1;
     }
-
-    #[inline(always)]
-    pub(super) fn set(&mut self, index: usize, pixel: P) {
-        if let Some(stored) = self.colour.get_mut(index) {
-            *stored = pixel;
-        }
-    }
+    seen
 }

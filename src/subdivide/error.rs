@@ -1,4 +1,4 @@
-//! What subdivision refuses.
+//! What can be wrong with a request to subdivide, join or tessellate.
 
 /// Why patches cannot be subdivided, joined or tessellated as asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,6 +9,13 @@ pub enum SubdivideError {
     Tolerance {
         /// The tolerance in units of 2^-16.
         bits: i32,
+    },
+    /// More levels of subdivision than there may be.
+    TooDeep {
+        /// The levels that the tolerance asks for.
+        needed: u32,
+        /// The most there may be.
+        limit: u32,
     },
     /// A patch whose control points are all equal.
     Point {
@@ -75,6 +82,9 @@ impl core::fmt::Display for SubdivideError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Tolerance { bits } => write!(f, "the tolerance is not positive: {bits} / 65536"),
+            Self::TooDeep { needed, limit } => {
+                write!(f, "the tolerance needs {needed} levels of subdivision, at most {limit} are possible")
+            }
             Self::Point { patch } => write!(f, "all control points of patch {patch} are equal"),
             Self::PatchTooDeep { patch, limit } => {
                 write!(f, "parts of patch {patch} are not flat to the tolerance after {limit} halvings")

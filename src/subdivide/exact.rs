@@ -127,7 +127,7 @@ pub fn quarter_triangle<W: Word>(values: &mut [W], degree: usize, child: Quarter
     match child {
         Quarter::AtU => {
             rows(values, degree, |fixed, k| triangle_index(k, fixed));
-            rows(values, degree, |fixed, k| triangle_index(fixed, k));
+            rows(values, degree, triangle_index);
             scale(values, degree, |i, _, _| i);
         }
         Quarter::AtV | Quarter::Centre => {

@@ -17,7 +17,7 @@ impl<const K: usize> Curve<K> {
     /// ```
     #[must_use]
     pub fn subdivide(&self) -> [Self; 2] {
-        let source = Source { degrees: (K - 1, 0), points: &self.points, weights: None };
+        let source = Source::new((K - 1, 0), &self.points, None);
         Half::ALL.map(|half| {
             let mut out = *self;
             source.cut(Cut::Half(Direction::R, half), &mut out.points, &mut []);
@@ -38,7 +38,7 @@ impl<const N: usize, const LEN: usize> Triangle<N, LEN> {
     /// ```
     #[must_use]
     pub fn subdivide(&self) -> [Self; 4] {
-        let source = Source { degrees: (N, N), points: &self.points, weights: None };
+        let source = Source::new((N, N), &self.points, None);
         Quarter::ALL.map(|quarter| {
             let mut out = *self;
             source.cut(Cut::Triangle(quarter), &mut out.points, &mut []);
@@ -79,7 +79,7 @@ impl<const M: usize, const H: usize> Tensor<M, H> {
 
     fn cut(&self, part: Cut) -> Self {
         let mut out = *self;
-        let source = Source { degrees: (M - 1, H - 1), points: self.points.as_flattened(), weights: None };
+        let source = Source::new((M - 1, H - 1), self.points.as_flattened(), None);
         source.cut(part, out.points.as_flattened_mut(), &mut []);
         out
     }
@@ -89,7 +89,7 @@ impl<const K: usize> RationalCurve<K> {
     /// The halves 0 ..= 1/2 and 1/2 ..= 1: points and weights of the exact halves, each rounded once to 2^-16.
     #[must_use]
     pub fn subdivide(&self) -> [Self; 2] {
-        let source = Source { degrees: (K - 1, 0), points: &self.net.points, weights: Some(&self.weights) };
+        let source = Source::new((K - 1, 0), &self.net.points, Some(&self.weights));
         Half::ALL.map(|half| {
             let mut out = *self;
             source.cut(Cut::Half(Direction::R, half), &mut out.net.points, &mut out.weights);
@@ -103,7 +103,7 @@ impl<const N: usize, const LEN: usize> RationalTriangle<N, LEN> {
     /// 2^-16.
     #[must_use]
     pub fn subdivide(&self) -> [Self; 4] {
-        let source = Source { degrees: (N, N), points: &self.net.points, weights: Some(&self.weights) };
+        let source = Source::new((N, N), &self.net.points, Some(&self.weights));
         Quarter::ALL.map(|quarter| {
             let mut out = *self;
             source.cut(Cut::Triangle(quarter), &mut out.net.points, &mut out.weights);
@@ -128,7 +128,7 @@ impl<const M: usize, const H: usize> RationalTensor<M, H> {
 
     fn cut(&self, part: Cut) -> Self {
         let (mut out, weights) = (*self, self.weights.as_flattened());
-        let source = Source { degrees: (M - 1, H - 1), points: self.net.points.as_flattened(), weights: Some(weights) };
+        let source = Source::new((M - 1, H - 1), self.net.points.as_flattened(), Some(weights));
         source.cut(part, out.net.points.as_flattened_mut(), out.weights.as_flattened_mut());
         out
     }

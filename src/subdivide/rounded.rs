@@ -46,14 +46,29 @@ impl Cut {
 /// A net as the subdivider sees it; a curve has the degrees (n, 0).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Source<'a> {
-    pub(crate) degrees: (usize, usize),
-    pub(crate) points: &'a [Point3],
-    pub(crate) weights: Option<&'a [I16F16]>,
+    degrees: (usize, usize),
+    points: &'a [Point3],
+    weights: Option<&'a [I16F16]>,
+    /// Weights of parts are multiplied by two to this power: surfaces do not change by it, roundings do.
+    doublings: i32,
 }
 
 impl<'a> Source<'a> {
+    pub(crate) fn new(degrees: (usize, usize), points: &'a [Point3], weights: Option<&'a [I16F16]>) -> Self {
+        Self { degrees, points, weights, doublings: 0 }
+    }
+
     pub(crate) fn of(net: SurfaceNet<'a>) -> Self {
-        Self { degrees: net.degrees(), points: net.points(), weights: net.weights() }
+        Self::new(net.degrees(), net.points(), net.weights())
+    }
+
+    /// The source whose parts have weights of at least 17 bits and of no more than 31: a weight is then within 2^-17 of
+    /// itself, however small the weights of the net are.
+    pub(crate) fn with_long_weights(self) -> Self {
+        let Some(weights) = self.weights else { return self };
+        let length = |w: Option<&I16F16>| 32 - w.map_or(1, |w| w.to_bits()).leading_zeros() as i32;
+        let (longest, shortest) = (length(weights.iter().max()), length(weights.iter().min()));
+        Self { doublings: (17 + longest - shortest).min(31) - longest, ..self }
     }
 
     /// Writes the points of the part into `points` and, for a rational net, its weights into `weights`; both hold as
@@ -65,9 +80,35 @@ impl<'a> Source<'a> {
     pub(crate) fn cut(self, part: Cut, points: &mut [Point3], weights: &mut [I16F16]) {
         match self.weights {
             Some(by) => self.cut_weighted(by, part, points, weights),
+            None if self.cut_cubics(part, points) => {}
             None if self.points.len() <= 16 => self.cut_points::<16>(part, points),
             None => self.cut_points::<MOST>(part, points),
         }
+    }
+
+    /// [`cut_points`](Self::cut_points) for halves along a direction of degree 3, from differences that fit 32 bits;
+    /// whether they do.
+    fn cut_cubics(self, part: Cut, points: &mut [Point3]) -> bool {
+        let Cut::Half(direction, half) = part else { return false };
+        let (m, h) = self.degrees;
+        let (degree, rows, along, across) = match direction {
+            Direction::R => (m, h + 1, h + 1, 1),
+            Direction::S => (h, m + 1, 1, h + 1),
+        };
+        if degree != 3 || points.len() < self.points.len() {
+            return false;
+        }
+        for row in 0..rows {
+            let place = |k: usize| row * across + if half == Half::First { k } else { 3 - k } * along;
+            let row = [place(0), place(1), place(2), place(3)];
+            let Some(parts) = cubic_half(row.map(|at| self.points.get(at))) else { return false };
+            for (at, part) in row.into_iter().zip(parts) {
+                if let Some(point) = points.get_mut(at) {
+                    *point = part;
+                }
+            }
+        }
+        true
     }
 
     #[inline(never)]
@@ -95,8 +136,9 @@ impl<'a> Source<'a> {
         }
         let shift = part.apply(total, self.degrees);
         for (weight, sum) in weights.iter_mut().zip(total.iter()) {
-            // Sums of positive integers: at least 2^shift.
-            *weight = I16F16::from_bits(((*sum + ((1 << shift) >> 1)) >> shift) as i32);
+            // Sums of positive integers: at least 2^shift. Doubled, at most 31 + shift bits.
+            let (up, down) = (self.doublings.max(0), shift + self.doublings.min(0).unsigned_abs());
+            *weight = I16F16::from_bits((((*sum << up) + ((1 << down) >> 1)) >> down).max(1) as i32);
         }
         for axis in 0..3 {
             let mut sums = [0_i128; MOST];
@@ -111,6 +153,28 @@ impl<'a> Source<'a> {
             }
         }
     }
+}
+
+/// The first half of a cubic, rounded half up: the sums are taken from the first point, so they fit 32 bits where no other
+/// is 2048 units away. `None` beyond.
+#[inline(always)]
+fn cubic_half(row: [Option<&Point3>; 4]) -> Option<[Point3; 4]> {
+    let [a, b, c, d] = [row[0]?, row[1]?, row[2]?, row[3]?];
+    let mut out = [*a; 4];
+    for axis in 0..3 {
+        let [a, b, c, d] = [a, b, c, d].map(|p| bits(p, axis) as i32);
+        let [u, v, w] = [b, c, d].map(|p| p.wrapping_sub(a));
+        // Magnitudes, or one more, without a branch. Legal coordinates may differ by more than 31 bits.
+        let far = |v: i32, p: i32| (v ^ (v >> 31)) >> 27 | ((p ^ a) & (p ^ v)) >> 31;
+        if far(u, b) | far(v, c) | far(w, d) != 0 {
+            return None;
+        }
+        let sums = [(u + 1) >> 1, (2 * u + v + 2) >> 2, (3 * (u + v) + w + 4) >> 3];
+        for (point, sum) in out.iter_mut().skip(1).zip(sums) {
+            set(point, axis, i64::from(a + sum));
+        }
+    }
+    Some(out)
 }
 
 fn bits(p: &Point3, axis: usize) -> i64 {

@@ -7,7 +7,7 @@ use embedded_surfaces::patch::{
     Parameter, RationalTensorNet, RationalTriangleNet, Surface, SurfaceNet, TensorNet, TriangleNet,
 };
 use embedded_surfaces::reference::{partials, point};
-use embedded_surfaces::subdivide::{PatchTopology, Tessellation, Vertex, tessellate, topology};
+use embedded_surfaces::subdivide::{PatchTopology, Tessellation, Tolerance, Vertex, tessellate, topology};
 use std::collections::{BTreeSet, HashMap};
 
 /// A patch of any kind that owns its net.
@@ -88,7 +88,7 @@ pub(crate) fn mesh<'a, S: Surface>(
     table: &'a [PatchTopology],
     tolerance: f64,
 ) -> Tessellation<'a, S> {
-    tessellate(patches, table, I16F16::from_num(tolerance)).unwrap()
+    tessellate(patches, table, Tolerance::new(I16F16::from_num(tolerance)).unwrap()).unwrap()
 }
 
 /// Panics at a crack: within a part every edge must have one triangle on either side, with its ends in opposite order,

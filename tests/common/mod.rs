@@ -2,7 +2,9 @@
 #![allow(dead_code, reason = "each test binary uses a part")]
 
 pub(crate) mod basis;
+pub(crate) mod blossom;
 pub(crate) mod draw;
+pub(crate) mod smooth;
 
 use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::num::I16F16;

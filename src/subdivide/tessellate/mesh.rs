@@ -179,11 +179,11 @@ impl<S: Surface> Tessellation<'_, S> {
     /// use embedded_surfaces::geometry::Point3;
     /// use embedded_surfaces::num::I16F16;
     /// use embedded_surfaces::patch::sphere;
-    /// use embedded_surfaces::subdivide::{MeshBuffers, MeshVertex, PatchTopology, tessellate, topology};
+    /// use embedded_surfaces::subdivide::{MeshBuffers, MeshVertex, PatchTopology, Tolerance, tessellate, topology};
     /// let ball = sphere(Point3::ORIGIN, I16F16::from_num(20))?;
     /// let mut table = [PatchTopology::default(); 8];
     /// topology(&ball, &mut table)?;
-    /// let triangles = tessellate(&ball, &table, I16F16::from_num(2))?;
+    /// let triangles = tessellate(&ball, &table, Tolerance::new(I16F16::from_num(2))?)?;
     /// let (mut vertices, mut faces, mut index) = ([MeshVertex::BLANK; 400], [[0; 3]; 800], [0; 800]);
     /// let buffers = MeshBuffers { vertices: &mut vertices, triangles: &mut faces, index: &mut index };
     /// let mesh = triangles.mesh(buffers)?;

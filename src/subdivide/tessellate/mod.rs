@@ -19,9 +19,8 @@ mod triple;
 mod zip;
 
 use super::edge::{edge_count, edge_degree, edge_index, is_collapsed, net_point, same_curve};
-use super::{Buffer, PatchTopology, SubdivideError};
+use super::{Buffer, PatchTopology, SubdivideError, Tolerance};
 use crate::geometry::Point3;
-use crate::num::I16F16;
 use crate::patch::{Parameter, Surface, SurfaceNet};
 use cell::{Cell, FINE, Fine};
 use eval::{dyadic, eval};
@@ -93,7 +92,7 @@ impl<S> Clone for Tessellation<'_, S> {
 /// use embedded_graphics::{mock_display::MockDisplay, pixelcolor::Gray8, prelude::*, primitives::*};
 /// use embedded_surfaces::num::I16F16;
 /// use embedded_surfaces::patch::BiquadraticPatch;
-/// use embedded_surfaces::subdivide::{PatchTopology, tessellate, topology};
+/// use embedded_surfaces::subdivide::{PatchTopology, Tolerance, tessellate, topology};
 ///
 /// let sail = [BiquadraticPatch::from_ints([
 ///     [[4, 60, 0], [30, 50, 40], [60, 60, 0]],
@@ -104,7 +103,7 @@ impl<S> Clone for Tessellation<'_, S> {
 /// topology(&sail, &mut table)?;
 /// let mut display = MockDisplay::<Gray8>::new();
 /// display.set_allow_overdraw(true); // triangles share their borders
-/// for (count, corners) in tessellate(&sail, &table, I16F16::ONE)?.enumerate() {
+/// for (count, corners) in tessellate(&sail, &table, Tolerance::new(I16F16::ONE)?)?.enumerate() {
 ///     let [a, b, c] = corners.map(|vertex| Point::new(vertex.point.x.to_num(), vertex.point.y.to_num()));
 ///     let shade = PrimitiveStyle::with_fill(Gray8::new(100 + 4 * (count % 32) as u8));
 ///     Triangle::new(a, b, c).into_styled(shade).draw(&mut display)?;
@@ -114,18 +113,14 @@ impl<S> Clone for Tessellation<'_, S> {
 /// ```
 ///
 /// # Errors
-/// [`SubdivideError::Tolerance`] unless it is positive; [`SubdivideError::Buffer`] for fewer entries of the topology than
-/// patches; [`SubdivideError::Point`] for a patch whose control points are all equal;
+/// [`SubdivideError::Buffer`] for fewer entries of the topology than patches; [`SubdivideError::Point`] for a patch whose control points are all equal;
 /// [`SubdivideError::PatchTooDeep`] where 16 halvings in one direction do not make a patch flat. Rounding takes some
 /// 2^-16 a level, and more where weights differ by factors beyond 2^10, so the finest tolerance is around 2^-11.
 pub fn tessellate<'a, S: Surface>(
     patches: &'a [S],
     topology: &'a [PatchTopology],
-    tolerance: I16F16,
+    tolerance: Tolerance,
 ) -> Result<Tessellation<'a, S>, SubdivideError> {
-    if tolerance <= I16F16::ZERO {
-        return Err(SubdivideError::Tolerance { bits: tolerance.to_bits() });
-    }
     if topology.len() < patches.len() {
         let (needed, given) = (patches.len(), topology.len());
         return Err(SubdivideError::Buffer { buffer: Buffer::Topology, needed, given });
@@ -137,8 +132,7 @@ pub fn tessellate<'a, S: Surface>(
             return Err(SubdivideError::Point { patch });
         }
     }
-    let mut mesh =
-        Tessellation { patches, topology, tolerance: tolerance.to_bits().into(), leaf: None, zips: [None; 2] };
+    let mut mesh = Tessellation { patches, topology, tolerance: tolerance.bits(), leaf: None, zips: [None; 2] };
     // Every cell is visited once, so that nothing later can be too deep.
     for patch in 0..patches.len() {
         let Some(tree) = mesh.tree(patch) else { continue };
