@@ -141,7 +141,8 @@ pub(super) const MOST_LEAST: u8 = 2;
 /// How far the displacements of a net from an affine map spread along each axis, times the first result.
 ///
 /// The map is that of the corners of a triangle; of a tensor-product patch that of the parallelogram nearest to its
-/// corners. Below 2^45.
+/// corners. The surface is nowhere without a share of its corners, whose displacements are none or few: that much less
+/// it spreads than the net. Below 2^45.
 fn displacements(net: &SurfaceNet<'_>) -> (i64, Triple) {
     let ((m, h), points) = (net.degrees(), net.points());
     let at = |index: usize| Triple::of(net_point(points, index));
@@ -151,7 +152,7 @@ fn displacements(net: &SurfaceNet<'_>) -> (i64, Triple) {
         range = Some((low.min(e), high.max(e)));
     };
     let (n, mut index) = (m as i64, 0);
-    let scale = if net.is_triangle() {
+    let (scale, of_corners) = if net.is_triangle() {
         let (u, v, w) = (at(0), at(triangle_index(m, 0)), at(triangle_index(0, m)));
         for row in 0..=n {
             for k in 0..=row {
@@ -159,7 +160,7 @@ fn displacements(net: &SurfaceNet<'_>) -> (i64, Triple) {
                 index += 1;
             }
         }
-        n
+        (n, Triple::default())
     } else {
         let last = points.len().saturating_sub(1);
         let (a, b, c, d) = (at(0), at(last - h), at(h), at(last));
@@ -172,9 +173,27 @@ fn displacements(net: &SurfaceNet<'_>) -> (i64, Triple) {
                 index += 1;
             }
         }
-        4 * n * h
+        (4 * n * h, (a - b - c + d).abs() * (2 * n * h))
     };
-    (scale, range.map_or(Triple::default(), |(low, high)| high - low))
+    let (whole, corners) = (range.map_or(Triple::default(), |(low, high)| high - low), share_of_corners(net));
+    (scale, (whole * (SHARES - corners) + of_corners * corners).halved(SHARES.trailing_zeros()))
+}
+
+/// What shares are counted in.
+const SHARES: i64 = 1 << 12;
+
+/// The least share, rounded down, that the corners of a net have in a point of its surface: Bernstein polynomials are
+/// least in the middle, (1/2)^m + (1/2)^m and 3 (1/3)^n, and weights count by their ratio.
+fn share_of_corners(net: &SurfaceNet<'_>) -> i64 {
+    let (m, h) = net.degrees();
+    let share = if net.is_triangle() {
+        SHARES.checked_div(3_i64.pow(m as u32 - 1)).unwrap_or(0)
+    } else {
+        SHARES >> (m + h - 2)
+    };
+    let Some(weights) = net.weights() else { return share };
+    let (least, most) = weights.iter().fold((i64::MAX, 1), |(low, high), w| (low.min(w.bits()), high.max(w.bits())));
+    (share * least).checked_div(most).unwrap_or(0)
 }
 
 /// Calls `visit` for the second differences of a tensor-product net: along r, along s, and mixed.

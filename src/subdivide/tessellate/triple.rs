@@ -39,6 +39,11 @@ impl Triple {
         self.max(self * -1)
     }
 
+    /// Over 2^shift, rounded up.
+    pub(super) fn halved(self, shift: u32) -> Self {
+        self.zip(self, |c, _| (c + (1 << shift) - 1) >> shift)
+    }
+
     /// The largest of the three.
     pub(super) fn largest(self) -> i64 {
         self.x.max(self.y).max(self.z)
