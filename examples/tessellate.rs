@@ -31,7 +31,7 @@ use std::path::{Path, PathBuf};
 #[derive(Parser)]
 struct Arguments {
     /// Largest distance between mesh and surface, in millimetres
-    #[arg(long, default_value_t = 0.25)]
+    #[arg(long, default_value_t = 0.5)]
     tolerance: f64,
     /// Length of the teapot from handle to spout, in millimetres
     #[arg(long, default_value_t = 160.0)]
@@ -49,7 +49,7 @@ struct Arguments {
     #[arg(long, value_enum, default_value_t = Look::Mesh)]
     style: Look,
     /// Width and height of the picture in pixels
-    #[arg(long, num_args = 2, value_names = ["WIDTH", "HEIGHT"], default_values_t = [640, 480],
+    #[arg(long, num_args = 2, value_names = ["WIDTH", "HEIGHT"], default_values_t = [960, 720],
         value_parser = clap::value_parser!(u32).range(1..=4096))]
     size: Vec<u32>,
     /// Turn about the screen's horizontal, in degrees

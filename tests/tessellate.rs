@@ -439,6 +439,15 @@ fn normals_point_outwards_also_at_poles() {
                 assert!((n[k] - (p[k] - c) / 100.0).abs() < 2e-3, "{vertex:?}");
             }
         }
+        // Six times the volume inside the triangles, a little below that of the ball.
+        let determinant = |[a, b, c]: [[f64; 3]; 3]| {
+            (0..3)
+                .map(|k: usize| a[k] * (b[(k + 1) % 3] * c[(k + 2) % 3] - b[(k + 2) % 3] * c[(k + 1) % 3]))
+                .sum::<f64>()
+        };
+        let volume = mesh.corners().map(|corners| determinant(corners.map(units)) / 6.0).sum::<f64>();
+        let exact = 4.0 / 3.0 * std::f64::consts::PI * 1e6;
+        assert!((0.98..1.0).contains(&(volume / exact)), "{volume} of {exact}");
     });
     // The model is a mirror image on the screen: outwards stays outwards.
     with_mesh(&pot(), 1.0, |_, mesh| {

@@ -73,8 +73,8 @@ impl<S> Clone for Tessellation<'_, S> {
 ///
 /// *Within the tolerance*, by proof: the test of a cell bounds the distance for every triangle with corners on the
 /// patch and parameters in the cell, rounding of nets and vertices included. For a polynomial patch the distance is
-/// that of points at equal parameters. Measured on the seed patches, the
-/// teapot and solids: 0.2 to 0.8 of the tolerance is used.
+/// that of points at equal parameters. Measured on the seed patches, the teapot and solids: 0.2 to 0.8 of the tolerance
+/// is used.
 ///
 /// *Few triangles*: the cubic triangles P and Q of Tian Jie take 832 and 833 at a tolerance of 1, 3246 and 3277 at 1/4;
 /// the teapot, 290 units long, 5816 and 20 299.
