@@ -1,4 +1,4 @@
-//! What subdivision refuses.
+//! What can be wrong with a request to subdivide, join or tessellate.
 
 /// Why patches cannot be subdivided, joined or tessellated as asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,6 +15,18 @@ pub enum SubdivideError {
         /// The levels that the tolerance asks for.
         needed: u32,
         /// The most there may be.
+        limit: u32,
+    },
+    /// A patch whose control points are all equal.
+    Point {
+        /// The index of the patch.
+        patch: usize,
+    },
+    /// A patch that bends too much for the tolerance.
+    PatchTooDeep {
+        /// The index of the patch.
+        patch: usize,
+        /// How many halvings are not enough.
         limit: u32,
     },
     /// A buffer of the caller is too small.
@@ -47,12 +59,21 @@ pub enum SubdivideError {
 pub enum Buffer {
     /// One [`PatchTopology`](super::PatchTopology) per patch.
     Topology,
+    /// The vertices of a mesh.
+    Vertices,
+    /// The triangles of a mesh.
+    Triangles,
+    /// The index of vertices by place.
+    Index,
 }
 
 impl core::fmt::Display for Buffer {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
             Self::Topology => "topology",
+            Self::Vertices => "vertex",
+            Self::Triangles => "triangle",
+            Self::Index => "index",
         })
     }
 }
@@ -63,6 +84,10 @@ impl core::fmt::Display for SubdivideError {
             Self::Tolerance { bits } => write!(f, "the tolerance is not positive: {bits} / 65536"),
             Self::TooDeep { needed, limit } => {
                 write!(f, "the tolerance needs {needed} levels of subdivision, at most {limit} are possible")
+            }
+            Self::Point { patch } => write!(f, "all control points of patch {patch} are equal"),
+            Self::PatchTooDeep { patch, limit } => {
+                write!(f, "parts of patch {patch} are not flat to the tolerance after {limit} halvings")
             }
             Self::Buffer { buffer, needed, given } => {
                 write!(f, "the {buffer} buffer has room for {given} entries, {needed} are needed")

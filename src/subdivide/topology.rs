@@ -403,6 +403,7 @@ macro_rules! search {
     }};
 }
 
+#[allow(clippy::question_mark, reason = "there is no `?` in constant context")]
 const fn of_slice(nets: &[SurfaceNet<'_>], out: &mut [PatchTopology]) -> Result<(), SubdivideError> {
     search!(nets.len(), out, |patch| nets[patch])
 }
@@ -428,6 +429,7 @@ const fn of_slice(nets: &[SurfaceNet<'_>], out: &mut [PatchTopology]) -> Result<
 /// # Errors
 /// [`SubdivideError::Buffer`] with the number of entries needed, [`SubdivideError::NotOrientable`] for a part with
 /// one side, [`SubdivideError::TooManyPatches`] for more than 16384. What `out` holds then means nothing.
+#[allow(clippy::question_mark, reason = "the same text as in constant context")]
 pub fn topology<S: Surface>(patches: &[S], out: &mut [PatchTopology]) -> Result<(), SubdivideError> {
     search!(patches.len(), out, |patch| match patches.get(patch) {
         Some(patch) => patch.surface(),
