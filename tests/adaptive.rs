@@ -7,8 +7,9 @@ mod scene;
 
 use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::patch::{BicubicPatch, CubicTriangle, Surface};
-use embedded_surfaces::reference::Audit;
-use embedded_surfaces::render::{Area, Fragment, Frame, Light, Scene, Statistics, Style};
+use embedded_surfaces::reference::{Audit, Coverage};
+use embedded_surfaces::render::{Area, Cull, Fragment, Frame, Light, Scene, Statistics, Style};
+use embedded_surfaces::subdivide::{PatchTopology, topology};
 use scene::{Look, Random, VIEWS, teacup, teapot};
 
 fn draw<S: Surface>(patches: &[S], area: Area, rows: u32) -> Statistics {
@@ -93,4 +94,68 @@ fn random_cubic_triangles() {
     assert_eq!(counts, [953_926, 1098, 358]);
     // Moved by half as much they take 1.58.
     assert!(per_pixel <= 2.2, "{per_pixel}");
+}
+
+/// The pixels of a picture in bands of so many rows.
+fn picture<S: Surface>(scene: Scene<'_, S>, area: Area, rows: u32) -> (Vec<u8>, Statistics) {
+    let paint = |f: Fragment| f.shade;
+    let mut frame = Frame::new(scene, &paint, 0, area, rows).unwrap();
+    let (mut colour, mut depth) = (vec![0; frame.band_pixels()], vec![0; frame.band_pixels()]);
+    let mut pixels = Vec::new();
+    while let Some(band) = frame.next_band(&mut colour, &mut depth).unwrap() {
+        pixels.extend_from_slice(band.pixels());
+    }
+    (pixels, frame.statistics())
+}
+
+fn joined<S: Surface>(patches: &[S]) -> Vec<PatchTopology> {
+    let mut out = vec![PatchTopology::default(); patches.len()];
+    topology(patches, &mut out).unwrap();
+    out
+}
+
+/// What faces the viewer is all there; what faces away is left out, mostly; and bands do not show.
+#[test]
+fn back_faces() {
+    for view in VIEWS {
+        let patches = Look::at(view, (320, 240)).see(&teapot());
+        let edges = joined(&patches);
+        // Newell's normals point inwards in every part.
+        assert!(edges.iter().all(PatchTopology::is_inward));
+        let front = Audit::of_front(&patches, &edges, screen(320, 240)).unwrap();
+        assert_eq!(front.missed, [], "{view:?}");
+        let both = Audit::of(&patches, screen(320, 240)).unwrap();
+        assert!(front.covered > 15_000 && front.covered < both.covered);
+        // Pieces that straddle a silhouette are drawn whole.
+        assert!(front.pixels - front.covered < both.pixels / 6, "{} of {}", front.pixels, front.covered);
+    }
+    let patches = Look::at(VIEWS[1], (320, 240)).see(&teapot());
+    let edges = joined(&patches);
+    let scene = Scene::new(&patches, Light::default(), Style::Shaded).unwrap().with_topology(&edges).unwrap();
+    let (all, both) = picture(scene, screen(320, 240), 240);
+    let scene = scene.with_cull(Cull::Back);
+    let (whole, front) = picture(scene, screen(320, 240), 240);
+    assert!(3 * front.points < 2 * both.points, "{front:?} {both:?}");
+    for rows in [1, 7, 16] {
+        assert_eq!(picture(scene, screen(320, 240), rows).0, whole, "bands of {rows}");
+    }
+    // The outside of a closed pot looks the same; only through the spout and next to silhouettes it does not.
+    let changed = all.iter().zip(&whole).filter(|(a, b)| a != b).count();
+    assert!(changed < 400, "{changed} pixels differ");
+}
+
+/// All patches in one tile: no centre is missed that any of them covers, seams between pieces and patches included.
+#[test]
+fn whole_scenes_have_no_holes() {
+    for view in VIEWS {
+        let patches = Look::at(view, (320, 240)).see(&teapot());
+        let scene = Scene::new(&patches, Light::default(), Style::Flat).unwrap();
+        let (pixels, _) = picture(scene, screen(320, 240), 16);
+        let mut truth = Coverage::new(0, 0, 320, 240);
+        for patch in &patches {
+            truth.add(patch.surface(), (300, 300));
+        }
+        let missed: Vec<_> = truth.iter().filter(|(x, y)| pixels[(y * 320 + x) as usize] == 0).collect();
+        assert_eq!(missed, [], "{view:?}");
+    }
 }

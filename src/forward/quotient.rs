@@ -273,22 +273,29 @@ impl<W: Word, const R: usize> QuotientWalker<W, R> {
             return visitor;
         }
         loop {
-            let (mut i, j) = self.position;
-            let row = &mut self.row;
-            let wanted = visitor.wants_row(j);
-            while wanted {
-                visitor = visitor.point(&At { i, j, row, weights: &self.weights });
-                if i == self.last_in_row {
-                    break;
-                }
-                i += 1;
-                if V::TANGENTS { row.step::<true>(self.ladder) } else { row.step::<false>(self.ladder) }
+            let j = self.position.1;
+            if visitor.wants_row(j) {
+                visitor = self.visit_row(visitor);
             }
             if j == self.last_row {
                 return visitor;
             }
             self.next_row();
             if V::TANGENTS { self.start_row::<true>() } else { self.start_row::<false>() }
+        }
+    }
+
+    /// Visits what is left of the row, and leaves it at its end.
+    fn visit_row<V: Visit>(&mut self, mut visitor: V) -> V {
+        let (mut i, j) = self.position;
+        let row = &mut self.row;
+        loop {
+            visitor = visitor.point(&At { i, j, row, weights: &self.weights });
+            if i == self.last_in_row {
+                return visitor;
+            }
+            i += 1;
+            if V::TANGENTS { row.step::<true>(self.ladder) } else { row.step::<false>(self.ladder) }
         }
     }
 

@@ -3,8 +3,8 @@
 use super::{Coverage, fine_mesh};
 use crate::forward::Steps;
 use crate::num::I16F16;
-use crate::patch::Surface;
-use crate::render::{Area, Light, RenderError, Scene, Style, Tile};
+use crate::patch::{Surface, SurfaceNet};
+use crate::render::{Area, Cull, Light, RenderError, Scene, Style, Tile};
 use crate::subdivide::{PatchTopology, topology};
 use std::vec;
 use std::vec::Vec;
@@ -51,12 +51,42 @@ impl Audit {
     /// What [`Scene::new`] and [`Tile::new`] report; a patch that is not there adds nothing.
     pub fn add<S: Surface>(&mut self, patches: &[S], index: usize, area: Area) -> Result<(), RenderError> {
         let Some(patch) = patches.get(index) else { return Ok(()) };
+        let scene = Scene::new(core::slice::from_ref(patch), Light::default(), Style::Flat)?;
+        self.compare(index, patch, (scene, area), |truth, net, mesh| truth.add(net, mesh))
+    }
+
+    /// Draws each patch alone with [`Cull::Back`] and compares with the centres covered by what faces the viewer.
+    ///
+    /// # Errors
+    /// What [`Scene::new`], [`Scene::with_topology`] and [`Tile::new`] report.
+    pub fn of_front<S: Surface>(patches: &[S], topology: &[PatchTopology], area: Area) -> Result<Self, RenderError> {
+        let mut audit = Self::default();
+        for (index, (patch, topology)) in patches.iter().zip(topology).enumerate() {
+            let scene = Scene::new(core::slice::from_ref(patch), Light::default(), Style::Flat)?
+                .with_topology(core::slice::from_ref(topology))?
+                .with_cull(Cull::Back);
+            audit.compare(index, patch, (scene, area), |truth, net, mesh| {
+                truth.add_front(net, mesh, topology.is_inward());
+            })?;
+        }
+        Ok(audit)
+    }
+
+    /// Draws a scene of one patch and counts what it hits of what `cover` says.
+    fn compare<S: Surface>(
+        &mut self,
+        index: usize,
+        patch: &S,
+        (scene, area): (Scene<'_, S>, Area),
+        cover: impl FnOnce(&mut Coverage, SurfaceNet<'_>, (u32, u32)),
+    ) -> Result<(), RenderError> {
         let (mut colour, mut depth) = (vec![(); area.pixels()], vec![0; area.pixels()]);
         let mut tile = Tile::new(area, &mut colour, &mut depth, ())?;
-        Scene::new(core::slice::from_ref(patch), Light::default(), Style::Flat)?.draw(&mut tile, &|_| ());
-        let steps = Steps::hole_free(patch.surface());
+        scene.draw(&mut tile, &|_| ());
+        let net = patch.surface();
+        let steps = Steps::hole_free(net);
         let mut truth = Coverage::new(area.x, area.y, area.width, area.height);
-        truth.add(patch.surface(), fine_mesh((steps.r(), steps.s())));
+        cover(&mut truth, net, fine_mesh((steps.r(), steps.s())));
         self.pixels += (0..area.pixels()).filter(|i| tile.is_covered(*i)).count();
         self.covered += truth.count();
         self.missed.extend(truth.iter().filter(|(x, y)| !tile.covers(*x, *y)).map(|(x, y)| (index, x, y)));

@@ -278,13 +278,19 @@ impl<'a, S: Surface> Scene<'a, S> {
                 lines.draw(self.style);
                 statistics.points += lines.points;
             } else if let Some(patch) = self.grid_patch(patch) {
-                let mut filler = Filler::new(tile, paint);
-                statistics += grid::facets(&patch, (&self.light, self.style, self.window), &mut filler);
+                statistics += self.fill_facets(tile, paint, &patch);
             } else {
                 self.fill(tile, paint, (patch, net), Ink::Fill, &mut statistics);
             }
         });
         statistics
+    }
+
+    /// Fills the facets of one patch. Out of line: points and facets need not stand on the stack together.
+    #[inline(never)]
+    fn fill_facets<P: Paint>(&self, tile: &mut Tile<'_, P::Pixel>, paint: &P, patch: &grid::Patch<'a>) -> Statistics {
+        let mut filler = Filler::new(tile, paint);
+        grid::facets(patch, (&self.light, self.style, self.window), &mut filler)
     }
 
     /// Calls `f` for every patch whose box meets the tile.
@@ -302,6 +308,7 @@ impl<'a, S: Surface> Scene<'a, S> {
     }
 
     /// Draws the pieces of one patch that meet the tile.
+    #[inline(never)]
     fn fill<P: Paint>(
         &self,
         tile: &mut Tile<'_, P::Pixel>,
