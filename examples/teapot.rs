@@ -16,7 +16,7 @@ use embedded_surfaces::graphics::Material;
 use embedded_surfaces::num::{Angle, I16F16};
 use embedded_surfaces::patch::{BicubicPatch, Surface};
 use embedded_surfaces::reference::{Audit, fixed_half_up};
-use embedded_surfaces::render::{Area, Facet, Fill, Gloss, Light, Lines, Scene, Style};
+use embedded_surfaces::render::{Area, Cull, Facet, Fill, Gloss, Light, Lines, Scene, Style};
 use embedded_surfaces::subdivide::{PatchTopology, topology};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::error::Error;
@@ -49,6 +49,9 @@ struct Arguments {
     /// How far the surface may be from the facets of a grid, in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 1.0)]
     tolerance: f64,
+    /// Leave out what faces away from the viewer
+    #[arg(long)]
+    cull: bool,
     /// Where the picture goes
     #[arg(short, long, default_value = "teapot.png")]
     output: PathBuf,
@@ -141,6 +144,7 @@ fn run<S: Surface>(arguments: &Arguments, patches: &[S]) -> Result<(), Box<dyn E
     };
     let scene =
         Scene::new(patches, Light::default(), arguments.style.into())?.with_topology(&edges)?.with_fill(fill)?;
+    let scene = scene.with_cull(if arguments.cull { Cull::Back } else { Cull::None });
     let progress = bar(u64::from(height), "rows drawn");
     let paint = (&Material { colour: COLOUR }, BACKGROUND);
     let statistics =
@@ -160,12 +164,18 @@ fn run<S: Surface>(arguments: &Arguments, patches: &[S]) -> Result<(), Box<dyn E
         return Ok(());
     }
     let points = statistics.points;
-    let (progress, mut audit) = (bar(patches.len() as u64, "patches checked"), Audit::default());
-    for index in 0..patches.len() {
-        audit.add(patches, index, area)?;
-        progress.inc(1);
-    }
-    progress.finish_and_clear();
+    let audit = if arguments.cull {
+        Audit::of_front(patches, &edges, area)?
+    } else {
+        let (progress, mut audit) = (bar(patches.len() as u64, "patches checked"), Audit::default());
+        for index in 0..patches.len() {
+            audit.add(patches, index, area)?;
+            progress.inc(1);
+        }
+        progress.finish_and_clear();
+        audit
+    };
+    println!("  pieces             {} in all bands, after {} splits", statistics.pieces, statistics.splits);
     println!("  points             {points} in all bands");
     println!("  pixels             {} hit, summed over patches", audit.pixels);
     println!("  points per pixel   {:.2}", points as f64 / audit.pixels as f64);

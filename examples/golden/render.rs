@@ -12,7 +12,7 @@ use embedded_surfaces::graphics::Material;
 use embedded_surfaces::num::I16F16;
 use embedded_surfaces::patch::SurfaceNet;
 use embedded_surfaces::reference::{Audit, fixed_half_up};
-use embedded_surfaces::render::{Area, Fill, Light, Lines, RenderError, Scene, Style};
+use embedded_surfaces::render::{Area, Fill, Light, Lines, RenderError, Scene, Statistics, Style};
 use embedded_surfaces::subdivide::{PatchTopology, SubdivideError, topology};
 use serde_json::Map;
 use std::path::PathBuf;
@@ -130,17 +130,17 @@ pub(crate) fn run(case: &Field<'_>, output: Option<PathBuf>) -> Answer {
         nets.push(net.map_err(|error| case.malformed(&error.to_string()))?);
     }
     match picture(&settings, &nets) {
-        Ok((display, points, audit)) => {
+        Ok((display, drawn, audit)) => {
             if let Some(path) = output {
                 let image = display.to_rgb_output_image(&OutputSettings::default());
                 image.save_png(&path).map_err(|e| Malformed::new("-o", &format!("{}: {e}", path.display())))?;
             }
             Ok(Map::from_iter([
                 ("status".to_owned(), "ok".into()),
-                ("points".to_owned(), points.into()),
+                ("points".to_owned(), (drawn.points + drawn.vertices).into()),
                 ("pixels".to_owned(), audit.pixels.into()),
-                ("pieces".to_owned(), nets.len().into()),
-                ("splits".to_owned(), 0.into()),
+                ("pieces".to_owned(), (u64::from(drawn.pieces) + drawn.facets).into()),
+                ("splits".to_owned(), drawn.splits.into()),
                 ("missed".to_owned(), audit.missed.len().into()),
             ]))
         }
@@ -162,8 +162,10 @@ impl From<RenderError> for Refused {
     }
 }
 
-/// The picture, the lattice points or vertices that it took, and the audit against the reference.
-fn picture(settings: &Settings, nets: &[SurfaceNet<'_>]) -> Result<(SimulatorDisplay<Rgb888>, u64, Audit), Refused> {
+/// A picture, what drawing it took, and the audit against the reference.
+type Picture = (SimulatorDisplay<Rgb888>, Statistics, Audit);
+
+fn picture(settings: &Settings, nets: &[SurfaceNet<'_>]) -> Result<Picture, Refused> {
     let mut display = draw::blank(settings.area, settings.background);
     let paint = (&Material { colour: settings.colour }, settings.background);
     let mut edges = vec![PatchTopology::default(); nets.len()];
@@ -176,5 +178,5 @@ fn picture(settings: &Settings, nets: &[SurfaceNet<'_>]) -> Result<(SimulatorDis
         _ => (Scene::new(nets, Light::default(), settings.style)?, Audit::of(nets, settings.area)?),
     };
     let statistics = draw::in_bands(&mut display, scene, paint, (settings.area, settings.band), |_| ())?;
-    Ok((display, statistics.points + statistics.vertices, audit))
+    Ok((display, statistics, audit))
 }

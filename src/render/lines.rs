@@ -2,6 +2,7 @@
 
 use super::brush::Canvas;
 use super::depth::DepthWindow;
+use super::light::Side;
 use super::pen::{Ink, Pen, Rows, normal_inside};
 use super::plan::Plan;
 use super::style::{Lines, Style};
@@ -81,6 +82,7 @@ impl<'a, P: Paint> LineDrawing<'a, '_, P> {
             window,
             fraction: Fraction::of(plan.budget.scale, window.bits),
             ink: Ink::Line(window.bias()),
+            side: Side::Viewer,
             form: &plan.form,
             rows,
             points: &mut self.points,

@@ -1,7 +1,7 @@
 //! What happens at a lattice point: clip, depth test, and the brush where it is seen.
 
 use super::depth::DepthWindow;
-use super::light::normal;
+use super::light::{Side, normal_on};
 use super::tangents::row_range;
 use super::tile::{Area, is_nearest, is_seen, occlude};
 use crate::forward::{Form, Fraction, Site, Visit};
@@ -42,6 +42,8 @@ pub(super) struct Pen<'p, const NORMALS: bool> {
     pub(super) window: DepthWindow,
     pub(super) fraction: Fraction,
     pub(super) ink: Ink,
+    /// Which way the normals that a walk knows point.
+    pub(super) side: Side,
     pub(super) form: &'p Form<'p>,
     pub(super) rows: Rows,
     pub(super) points: &'p mut u64,
@@ -51,8 +53,8 @@ pub(super) struct Pen<'p, const NORMALS: bool> {
 impl<'p> Pen<'p, false> {
     /// The pen for walks that know normals.
     pub(super) fn with_normals(self) -> Pen<'p, true> {
-        let Self { area, depth, window, fraction, ink, form, rows, points, brush } = self;
-        Pen { area, depth, window, fraction, ink, form, rows, points, brush }
+        let Self { area, depth, window, fraction, ink, side, form, rows, points, brush } = self;
+        Pen { area, depth, window, fraction, ink, side, form, rows, points, brush }
     }
 }
 
@@ -84,7 +86,7 @@ impl<const NORMALS: bool> Visit for Pen<'_, NORMALS> {
         };
         if seen {
             let spot = Spot { i: at.i(), j: at.j(), x, y, index, depth };
-            let normal = if NORMALS { Some(normal(at.tangents())) } else { None };
+            let normal = if NORMALS { Some(normal_on(self.side, at.tangents())) } else { None };
             self.brush.dab(spot, normal);
         }
         self
@@ -122,7 +124,7 @@ fn meets(form: &Form<'_>, j: u32, band: (i32, i32)) -> bool {
 #[cold]
 #[inline(never)]
 pub(super) fn normal_inside(net: SurfaceNet<'_>, form: &Form<'_>, i: u32, j: u32) -> Option<[i32; 3]> {
-    normal(tangents_inside(net, form, i, j)?)
+    normal_on(Side::Viewer, tangents_inside(net, form, i, j)?)
 }
 
 /// The tangents there.

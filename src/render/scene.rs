@@ -4,7 +4,7 @@ use super::brush::{Canvas, Shader, Shading};
 use super::cull::faces_away;
 use super::depth::DepthWindow;
 use super::grid::{self, Facet, Facets, Filler, Recorder, Segments};
-use super::light::Light;
+use super::light::{Light, Side};
 #[cfg(feature = "styled")]
 use super::lines::any_family;
 use super::lines::{LineDrawing, families, family};
@@ -15,7 +15,7 @@ use super::style::{Cull, Fill, Style};
 use super::tangents::Tangents;
 use super::tile::{Area, Paint, Tile};
 use super::{RenderError, Statistics};
-use crate::forward::{Fraction, LatticeError, Sampling};
+use crate::forward::{Fraction, Kind, LatticeError, Sampling};
 use crate::geometry::{Bounds, Point3};
 use crate::num::{Coord, I16F16};
 use crate::patch::{Surface, SurfaceNet};
@@ -340,9 +340,16 @@ impl<P: Paint> Filling<'_, '_, '_, P> {
     fn lattice(&mut self, piece: SurfaceNet<'_>, plan: &Plan<'_>, halvings: u32) {
         let (area, colour, depth) = self.tile.parts();
         let (form, window) = (&plan.form, self.shading.window.halved(halvings));
+        // A tensor-product lattice that is turned has its tangents exchanged.
+        let side = match (self.cull, self.inward != (form.kind == Kind::Tensor && form.turn() == 1)) {
+            (Cull::None, _) => Side::Viewer,
+            (Cull::Back, false) => Side::Along,
+            (Cull::Back, true) => Side::Against,
+        };
         let mut shader = Shader {
             shading: self.shading,
             canvas: Canvas { paint: self.paint, patch: self.patch, colour },
+            side,
             tangents: Tangents::new(piece, form),
         };
         plan.draw(Pen {
@@ -351,6 +358,7 @@ impl<P: Paint> Filling<'_, '_, '_, P> {
             window,
             fraction: Fraction::of(plan.budget.scale, window.bits),
             ink: self.ink,
+            side,
             form,
             rows: Rows::in_band(form, (area.y, area.y.saturating_add_unsigned(area.height))),
             points: &mut self.statistics.points,

@@ -47,7 +47,8 @@ pub enum Cull {
     /// Both: patches are two-sided.
     #[default]
     None,
-    /// Pieces of patches that face away from the viewer everywhere are left out; nothing that faces the viewer is.
+    /// The outer one. Pieces of patches that face away from the viewer everywhere are left out, nothing that faces the
+    /// viewer is; what is drawn next to a silhouette is lit by its outward normal, so the light does not jump there.
     Back,
 }
 
