@@ -76,7 +76,7 @@ impl<'a, P: Paint> LineDrawing<'a, '_, P> {
     fn walk(&mut self, plan: &Plan<'_>, rows: Rows) {
         let (area, colour, depth) = self.tile.parts();
         let window = self.window;
-        plan.draw(Pen {
+        plan.draw(&mut Pen {
             area,
             depth,
             window,

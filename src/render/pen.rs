@@ -36,7 +36,7 @@ pub(super) trait Brush {
 }
 
 /// Draws the points of one lattice into a tile. One type for all colours: what a walker is made for.
-pub(super) struct Pen<'p, const NORMALS: bool> {
+pub(super) struct Pen<'p> {
     pub(super) area: Area,
     pub(super) depth: &'p mut [u16],
     pub(super) window: DepthWindow,
@@ -50,18 +50,8 @@ pub(super) struct Pen<'p, const NORMALS: bool> {
     pub(super) brush: &'p mut dyn Brush,
 }
 
-impl<'p> Pen<'p, false> {
-    /// The pen for walks that know normals.
-    pub(super) fn with_normals(self) -> Pen<'p, true> {
-        let Self { area, depth, window, fraction, ink, side, form, rows, points, brush } = self;
-        Pen { area, depth, window, fraction, ink, side, form, rows, points, brush }
-    }
-}
-
-impl<const NORMALS: bool> Visit for Pen<'_, NORMALS> {
-    const TANGENTS: bool = NORMALS;
-
-    fn wants_row(&mut self, j: u32) -> bool {
+impl Pen<'_> {
+    fn row(&mut self, j: u32) -> bool {
         let wanted = match self.rows {
             Rows::All => true,
             Rows::Every(stride) => j.checked_rem(stride) == Some(0),
@@ -74,10 +64,10 @@ impl<const NORMALS: bool> Visit for Pen<'_, NORMALS> {
     }
 
     #[inline(always)]
-    fn point<S: Site>(self, at: &S) -> Self {
+    fn touch<S: Site, const NORMALS: bool>(&mut self, at: &S) {
         let [x, y, z] = at.point();
-        let Some(index) = self.area.index(x, y) else { return self };
-        let Some(stored) = self.depth.get_mut(index) else { return self };
+        let Some(index) = self.area.index(x, y) else { return };
+        let Some(stored) = self.depth.get_mut(index) else { return };
         let depth = self.window.depth(z, at.below(2, &self.fraction));
         let seen = match self.ink {
             Ink::Fill => is_nearest(stored, depth),
@@ -89,6 +79,35 @@ impl<const NORMALS: bool> Visit for Pen<'_, NORMALS> {
             let normal = if NORMALS { Some(normal_on(self.side, at.tangents())) } else { None };
             self.brush.dab(spot, normal);
         }
+    }
+}
+
+/// The visitor is the reference: a walk then copies a pointer, not the pen.
+impl Visit for &mut Pen<'_> {
+    fn wants_row(&mut self, j: u32) -> bool {
+        self.row(j)
+    }
+
+    #[inline(always)]
+    fn point<S: Site>(self, at: &S) -> Self {
+        self.touch::<S, false>(at);
+        self
+    }
+}
+
+/// A pen for walks that know normals.
+pub(super) struct NormalPen<'a, 'p>(pub(super) &'a mut Pen<'p>);
+
+impl Visit for NormalPen<'_, '_> {
+    const TANGENTS: bool = true;
+
+    fn wants_row(&mut self, j: u32) -> bool {
+        self.0.row(j)
+    }
+
+    #[inline(always)]
+    fn point<S: Site>(self, at: &S) -> Self {
+        self.0.touch::<S, true>(at);
         self
     }
 }

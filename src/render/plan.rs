@@ -1,6 +1,6 @@
 //! Which lattices a patch is drawn by, and with which walker.
 
-use super::pen::Pen;
+use super::pen::{NormalPen, Pen};
 use super::pieces::depth;
 use crate::forward::{
     Accumulator, Budget, Form, Kernel, LatticeError, PieceBudget, PieceSlopes, QuotientWalker, Residual, Sampling,
@@ -65,15 +65,15 @@ impl<'a> Plan<'a> {
 
 impl Plan<'_> {
     /// Walks the lattice with a pen.
-    pub(super) fn draw(&self, pen: Pen<'_, false>) {
+    pub(super) fn draw(&self, pen: &mut Pen<'_>) {
         match (self.width, self.form.weights().is_some()) {
             (Width::Cubic32, false) => run::<_, _, 4>(Residual::<i32>::of(&self.budget), self, pen),
             (Width::Cubic64, false) => run::<_, _, 4>(Residual::<i64>::of(&self.budget), self, pen),
             (Width::Quintic64, false) => run::<_, _, 6>(Residual::<i64>::of(&self.budget), self, pen),
             (Width::Full64, false) => run::<_, _, 9>(Residual::<i64>::of(&self.budget), self, pen),
             (Width::Full128, false) => run::<_, _, 9>(Residual::<i128>::of(&self.budget), self, pen),
-            (Width::Cubic64, true) => run_quotient::<i64, _, 4>(self, pen.with_normals()),
-            (_, true) => run_quotient::<i128, _, 9>(self, pen.with_normals()),
+            (Width::Cubic64, true) => run_quotient::<i64, _, 4>(self, NormalPen(pen)),
+            (_, true) => run_quotient::<i128, _, 9>(self, NormalPen(pen)),
         }
     }
 }

@@ -352,7 +352,7 @@ impl<P: Paint> Filling<'_, '_, '_, P> {
             side,
             tangents: Tangents::new(piece, form),
         };
-        plan.draw(Pen {
+        plan.draw(&mut Pen {
             area,
             depth,
             window,
