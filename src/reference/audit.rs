@@ -61,3 +61,11 @@ impl Audit {
         Ok(())
     }
 }
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for Audit {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let (pixels, covered, missed) = (self.pixels, self.covered, self.missed.len());
+        defmt::write!(f, "{} pixels hit, {} of {} centres missed", pixels, missed, covered);
+    }
+}
