@@ -17,7 +17,7 @@ pub(crate) const TURN: u32 = 40;
 const ROWS: u32 = 16;
 const BAND: usize = (AREA.width * ROWS) as usize;
 /// Pixels of a unit of the model, of which it is 12 600 high: what keeps the spout on the screen at every spin.
-const SCALE: I32F32 = I32F32::from_bits((1 << 32) / 282);
+const SCALE: I32F32 = I32F32::from_bits((1 << 32) / 270);
 
 /// What a frame needs: 6 KB of patches, and for a band 2 KB of colours and 4 KB of depths.
 #[derive(Debug)]
