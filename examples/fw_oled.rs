@@ -3,8 +3,9 @@
 //! bands of 16 rows.
 //!
 //! ```text
-//! CARGO_PROFILE_RELEASE_OPT_LEVEL=s cargo build --release --target thumbv7m-none-eabi --example fw_oled
-//! qemu-system-arm -machine lm3s6965evb -serial stdio -kernel target/thumbv7m-none-eabi/release/examples/fw_oled
+//! export CARGO_TARGET_THUMBV7M_NONE_EABI_RUNNER="qemu-system-arm -machine lm3s6965evb -serial stdio -kernel"
+//! export CARGO_PROFILE_RELEASE_OPT_LEVEL=s
+//! cargo run --release --target thumbv7m-none-eabi --example fw_oled
 //! ```
 //!
 //! It turns for ever. A byte n on the serial line asks for a halt: at the first frame from n on the board answers
