@@ -179,7 +179,7 @@ fn panel(log: &[Event]) -> Vec<u8> {
                 match (data, bytes.as_slice()) {
                     (false, [0x15, first, last]) => [window[0], window[1]] = [*first, *last],
                     (false, [0x75, first, last]) => [window[2], window[3]] = [*first, *last],
-                    (false, command) => assert!([0x81, 0xa0, 0xa4, 0xaf].contains(&command[0]), "{command:x?}"),
+                    (false, command) => assert!([0x81, 0xa0, 0xa4, 0xaf].contains(&command[0]), "{:x}", command[0]),
                     (true, pixels) => {
                         let [left, right, top, bottom] = window.map(usize::from);
                         assert_eq!(pixels.len(), (right + 1 - left) * (bottom + 1 - top));

@@ -50,7 +50,9 @@ pub(crate) fn cargo(command: &str, target: &str, what: &[&str], environment: &[(
         cargo.env_remove(variable);
     }
     let output = cargo.envs(environment.iter().copied()).output().unwrap();
-    assert!(output.status.success(), "{target} {what:?}:\n{}", String::from_utf8_lossy(&output.stderr));
+    let said = String::from_utf8_lossy(&output.stderr);
+    let error = said.find("error").unwrap_or(0); // after warnings
+    assert!(output.status.success(), "{target} {what:?}:\n{}", &said[error..]);
     folder.join(target).join("release")
 }
 
