@@ -7,11 +7,14 @@ use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SectionKind};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 pub(crate) const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 /// How long a firmware may run before it is killed; it takes a fraction of a second.
 pub(crate) const WATCHDOG: Duration = Duration::from_secs(30);
+/// Held while a build runs.
+static BUILDS: Mutex<()> = Mutex::new(());
 
 /// Says on the real standard error, which the test harness does not capture, that something is not checked.
 pub(crate) fn skip(target: &str, missing: &str) {
@@ -44,12 +47,16 @@ pub(crate) fn cargo(command: &str, target: &str, what: &[&str], environment: &[(
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(ROOT).args([command, "--release", "--locked", "--quiet", "--target", target]);
     cargo.arg("--target-dir").arg(&folder).args(what);
-    // These would replace the link arguments of .cargo/config.toml, or the filter of the log.
-    for variable in ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "CARGO_BUILD_RUSTFLAGS", "CARGO_BUILD_TARGET", "DEFMT_LOG"]
-    {
+    // These would replace the link arguments of .cargo/config.toml.
+    for variable in ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "CARGO_BUILD_RUSTFLAGS", "CARGO_BUILD_TARGET"] {
         cargo.env_remove(variable);
     }
-    let output = cargo.envs(environment.iter().copied()).output().unwrap();
+    // One at a time: the builds for all targets share the procedural macros and their folder.
+    let one = BUILDS.lock();
+    // The same filter of the log for all, or `defmt` would be built anew each time.
+    cargo.env("DEFMT_LOG", "trace").envs(environment.iter().copied());
+    let output = cargo.output().unwrap();
+    drop(one);
     let said = String::from_utf8_lossy(&output.stderr);
     let error = said.find("error").unwrap_or(0); // after warnings
     assert!(output.status.success(), "{target} {what:?}:\n{}", &said[error..]);
