@@ -1,9 +1,9 @@
 //! What the LM3S6965 evaluation board needs for its OLED and its serial line: SPI (a PL022), pins (PL061), UART (a
 //! PL011), by their registers.
 //!
-//! Checked under QEMU, which does not miss clock gates or pin functions. Of them this follows the data sheet: the
-//! 8 MHz crystal drives all, SPI runs at 4 MHz, the serial line at 115 200 baud. Of a board of your own, replace this
-//! file by the types of its HAL.
+//! Run under QEMU only, which looks at neither clock gates nor pin functions nor the panel's supply: for those this
+//! follows the published pin table of the board. The 8 MHz crystal drives all, SPI runs at 4 MHz, the serial line at
+//! 115 200 baud. For a board of your own, put the types of its HAL in the place of this file.
 
 use core::convert::Infallible;
 use core::fmt;
@@ -44,7 +44,8 @@ fn set(register: usize, bits: u32) {
 pub(crate) struct Board {
     /// The bus of the OLED and the card slot.
     pub(crate) spi: Spi,
-    /// PD0: high for the OLED, low for the card.
+    /// PD0, which selects the card where it is low. QEMU takes it, high, for the OLED's select; on the board that is
+    /// PA3, which the bus drives.
     pub(crate) select: Pin,
     /// PC7: low for commands to the OLED, high for its pixels.
     pub(crate) data: Pin,
