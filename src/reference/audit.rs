@@ -128,3 +128,11 @@ fn is_inside(set: &Coverage, (x, y): (i32, i32), reach: f64) -> bool {
     (-far..=far)
         .all(|dy| (-far..=far).all(|dx| f64::from(dx).hypot(f64::from(dy)) > reach || set.contains(x + dx, y + dy)))
 }
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for Audit {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let (pixels, covered, missed) = (self.pixels, self.covered, self.missed.len());
+        defmt::write!(f, "{} pixels hit, {} of {} centres missed", pixels, missed, covered);
+    }
+}

@@ -272,6 +272,25 @@ impl core::fmt::Display for Coverage {
     }
 }
 
+#[cfg(feature = "defmt")]
+mod format {
+    use super::{Centres, Coverage};
+    use defmt::{Format, Formatter};
+
+    impl Format for Coverage {
+        fn format(&self, f: Formatter<'_>) {
+            let (origin, size) = (self.origin(), self.size());
+            defmt::write!(f, "{} of {} pixels at {} covered", self.count(), size, origin);
+        }
+    }
+
+    impl Format for Centres<'_> {
+        fn format(&self, f: Formatter<'_>) {
+            defmt::write!(f, "{} covered centres left", self.left);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::fine_mesh;

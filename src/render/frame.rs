@@ -195,3 +195,23 @@ impl<'a, S: Surface, P: Paint> Frame<'a, S, P> {
         self.statistics
     }
 }
+
+#[cfg(feature = "defmt")]
+mod format {
+    use super::{Band, Frame};
+    use crate::render::Paint;
+    use defmt::{Format, Formatter};
+
+    impl<P> Format for Band<'_, P> {
+        fn format(&self, f: Formatter<'_>) {
+            defmt::write!(f, "band of {}", self.area);
+        }
+    }
+
+    impl<S, P: Paint> Format for Frame<'_, S, P> {
+        fn format(&self, f: Formatter<'_>) {
+            let (area, rows, next) = (self.area, self.rows, self.next);
+            defmt::write!(f, "frame of {} in bands of {} rows, {} rows drawn, {}", area, rows, next, self.scene);
+        }
+    }
+}

@@ -406,3 +406,11 @@ fn check(net: SurfaceNet<'_>, style: Style) -> Result<(), LatticeError> {
     }
     Ok(())
 }
+
+#[cfg(feature = "defmt")]
+impl<S> defmt::Format for Scene<'_, S> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let (patches, style, cull) = (self.patches.len(), self.style, self.cull);
+        defmt::write!(f, "scene of {} patches, {}, cull {}, {}", patches, style, cull, self.light);
+    }
+}

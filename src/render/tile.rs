@@ -178,3 +178,11 @@ pub(super) fn is_seen(stored: &mut u16, depth: u16, bias: u16) -> bool {
     }
     seen
 }
+
+#[cfg(feature = "defmt")]
+impl<P> defmt::Format for Tile<'_, P> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let drawn = self.depth.iter().filter(|d| **d & 1 == 0).count();
+        defmt::write!(f, "tile of {}, {} pixels drawn", self.area, drawn);
+    }
+}
