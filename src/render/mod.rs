@@ -68,6 +68,7 @@ mod tests;
 pub use frame::{Band, Frame, Statistics};
 pub use grid::Facet;
 pub use light::Light;
+pub use pieces::stack_bytes;
 pub use scene::Scene;
 #[cfg(feature = "styled")]
 pub(crate) use scene::fits_every_style;

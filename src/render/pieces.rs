@@ -49,11 +49,33 @@ pub(super) trait Pieces {
     fn split(&mut self);
 }
 
-/// The bytes of stack that the pieces of a patch with `points` control points take: a net for each level, and one for
-/// what is only looked at.
-pub(super) const fn storage(points: usize, rational: bool) -> usize {
-    let (len, depth) = room(points);
-    (depth + 1) * len * (size_of::<Point3>() + if rational { size_of::<I16F16>() } else { 0 })
+/// The bytes of stack that [`Scene::draw`](super::Scene::draw) takes at most for a patch like this on a 32-bit target.
+///
+/// A net for each level of splitting, 7 of 16 or 21 points or 9 of more, 12 bytes a point (16 with weights); the walk with
+/// its difference table: 1.7 KB up to degree 3, 4.3 KB up to 5, 6.6 KB for triangles and 13 KB for tensor products above,
+/// 5.5 KB for rational patches up to degree 3 and 20.5 KB above; 2.4 KB for the rest. `examples/fw_stack.rs` measures it.
+///
+/// ```
+/// use embedded_surfaces::patch::{BicubicPatch, Surface};
+/// use embedded_surfaces::render::stack_bytes;
+/// const FLAT: BicubicPatch = embedded_surfaces::const_net!(BicubicPatch::from_ints([[[0; 3]; 4]; 4]));
+/// assert_eq!(stack_bytes(FLAT.surface()), 5394);
+/// ```
+#[must_use]
+pub const fn stack_bytes(net: SurfaceNet<'_>) -> usize {
+    let (len, depth) = room(net.points().len());
+    let (m, h) = net.degrees();
+    let degree = if m > h { m } else { h };
+    let rational = net.weights().is_some();
+    let walk = match degree {
+        ..=3 if rational => 5500,
+        _ if rational => 20_500,
+        ..=3 => 1650,
+        ..=5 => 4300,
+        _ if net.is_triangle() => 6600,
+        _ => 13_000,
+    };
+    (depth + 1) * len * if rational { 16 } else { 12 } + walk + 2400
 }
 
 /// Walks the pieces of a patch.

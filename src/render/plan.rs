@@ -73,6 +73,7 @@ impl Plan<'_> {
             (Width::Full64, false) => run::<_, _, 9>(Residual::<i64>::of(&self.budget), self, pen),
             (Width::Full128, false) => run::<_, _, 9>(Residual::<i128>::of(&self.budget), self, pen),
             (Width::Cubic64, true) => run_quotient::<i64, _, 4>(self, NormalPen(pen)),
+            (_, true) if self.form.degree() < 4 => run_quotient::<i128, _, 4>(self, NormalPen(pen)),
             (_, true) => run_quotient::<i128, _, 9>(self, NormalPen(pen)),
         }
     }
