@@ -261,9 +261,8 @@ impl<'a, S: Surface> Scene<'a, S> {
 
     /// Draws the patches that meet the tile, in order; what is nearer than what was there stays.
     ///
-    /// Cost: every lattice point of those patches. Stack: 0.6 KB for patches up to degree 3, 2.3 KB above, 4.8 KB
-    /// where the lattice needs `i128`; rational patches a third more. [`Fill::Grid`] takes 3.8 KB for bicubic patches, and
-    /// 2 KB more than points for others.
+    /// Cost: the points of the pieces that meet the tile, or the facets of the grid. Stack:
+    /// [`stack_bytes`](super::stack_bytes) of the largest patch.
     pub fn draw<P: Paint>(&self, tile: &mut Tile<'_, P::Pixel>, paint: &P) -> Statistics {
         let mut statistics = Statistics::default();
         if self.style.lines() == Some(true) {
