@@ -31,6 +31,27 @@ pub(crate) fn map_into(map: &Affine, out: &mut [BicubicPatch; 32]) -> Result<(),
     Ok(())
 }
 
+/// The patches in model coordinates, for constants: no code refers to them.
+#[allow(dead_code, reason = "each example uses its part")]
+pub(crate) const MODEL: [BicubicPatch; 32] = {
+    let mut model = [BLANK; 32];
+    let mut patch = 0;
+    while patch < 32 {
+        let mut points = [[[0; 3]; 4]; 4];
+        let mut k = 0;
+        while k < 16 {
+            points[k / 4][k % 4] = VERTICES[PATCHES[patch][k] as usize];
+            k += 1;
+        }
+        model[patch] = match BicubicPatch::from_ints(points) {
+            Ok(net) => net,
+            Err(_) => BLANK,
+        };
+        patch += 1;
+    }
+    model
+};
+
 /// The vertices in model coordinates, 4000 to a unit.
 pub(crate) fn vertices() -> impl Iterator<Item = Point3> + Clone {
     VERTICES.iter().map(|[x, y, z]| Point3::from_ints(*x, *y, *z))

@@ -7,7 +7,7 @@ use super::budget::unused_bits;
 use super::form::{Form, Kind};
 use super::{Accumulator, Budget, LatticeError, MAX_STEPS, Sampling, Steps};
 use crate::geometry::Point3;
-use crate::patch::{MAX_DEGREE, SurfaceNet, triangle_index};
+use crate::patch::{MAX_DEGREE, Surface, SurfaceNet, triangle_index};
 
 /// The fraction bits that a net keeps at least where its positions are rounded for a narrower accumulator.
 const LEAST_FRACTION: u32 = 7;
@@ -117,16 +117,16 @@ impl PieceSlopes {
     }
 
     /// The cheapest hole-free sampling of the piece, with the slack that seams between pieces need; `centres`: those of
-    /// cells may be used.
-    pub(crate) fn sampling(&self, net: SurfaceNet<'_>, centres: bool) -> Sampling {
-        if net.weights().is_some() {
+    /// cells may be used. `S`: what the net can be.
+    pub(crate) fn sampling<S: Surface>(&self, net: SurfaceNet<'_>, centres: bool) -> Sampling {
+        if S::SHAPE.rational && net.weights().is_some() {
             let plain = || Sampling { steps: Steps::hole_free(net), centres };
             let Sampling { steps, centres } = if centres { Sampling::cheapest(net) } else { plain() };
             let more = |n: u32| (with_slack(n) + 1).min(MAX_STEPS + 1);
             return Sampling { steps: Steps { r: more(steps.r), s: more(steps.s) }, centres };
         }
         let [a, b, c] = self.largest();
-        if net.is_triangle() {
+        if S::SHAPE.triangles && net.is_triangle() {
             // The centres of cells make up for the longest family of edges.
             let longest = a.max(b).max(c);
             let others = a.max(b).min(b.max(c)).min(a.max(c));
@@ -309,16 +309,13 @@ pub(crate) struct PieceBudget {
     pub(crate) halvings: u32,
 }
 
-/// The budget of a piece. Polynomial: 32 bits where the net, rounded to at least [`LEAST_FRACTION`] bits, fits and the
+/// The budget of a polynomial piece: 32 bits where the net, rounded to at least [`LEAST_FRACTION`] bits, fits and the
 /// degree is at most 3; then 64, then 128. [`Budget::fraction_bits`] tells what to round to. z counts in steps of 2, 4 or
 /// 8 units where it moves faster than x and y.
 ///
 /// # Errors
 /// [`LatticeError::Budget`] where 128 bits are too few.
 pub(crate) fn piece_budget(net: SurfaceNet<'_>, form: &Form<'_>) -> Result<PieceBudget, LatticeError> {
-    if form.weights().is_some() {
-        return Ok(PieceBudget { budget: Budget::of(form)?, halvings: 0 });
-    }
     let longest = longest_step(&net, form.steps);
     let halvings = (longest - 1).checked_ilog2().map_or(0, |bits| bits + 1).min(MOST_HALVINGS);
     let longest = (longest >> halvings) + u32::from(longest & ((1 << halvings) - 1) != 0);

@@ -54,7 +54,7 @@ pub use coons::CoonsBoundary;
 pub use curve::{CubicCurve, Curve, QuadraticCurve};
 pub use error::NetError;
 pub use hermite::HermiteCorner;
-pub use net::{CurveNet, Surface, SurfaceNet, TensorNet, TriangleNet};
+pub use net::{CurveNet, Shape, Surface, SurfaceNet, TensorNet, TriangleNet};
 pub use parameter::{Barycentric, Parameter};
 pub use quadrics::{Dimension, cone, cylinder, sphere, torus};
 pub use rational::{RationalCurve, RationalTensor, RationalTriangle};

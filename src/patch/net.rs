@@ -37,8 +37,35 @@ pub enum SurfaceNet<'a, C = I16F16> {
     RationalTensor(RationalTensorNet<'a, C>),
 }
 
+/// What the nets of a type can be. The renderer leaves out of the image what no net of its scene's type needs: a table of
+/// bicubic patches costs no code for triangles, weights or higher degrees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub struct Shape {
+    /// Whether some are triangles.
+    pub triangles: bool,
+    /// Whether some have weights.
+    pub rational: bool,
+    /// The highest degree.
+    pub degree: usize,
+}
+
+impl Shape {
+    /// Anything.
+    pub const ANY: Self = Self { triangles: true, rational: true, degree: MAX_DEGREE };
+
+    /// Tensor-product or triangular nets, polynomial or rational, of one degree.
+    pub(super) const fn of(triangles: bool, rational: bool, degree: usize) -> Self {
+        Self { triangles, rational, degree }
+    }
+}
+
 /// Anything that has a surface net: the nets themselves, views, references to them.
 pub trait Surface<C = I16F16> {
+    /// What [`surface`](Self::surface) can return; a promise.
+    const SHAPE: Shape = Shape::ANY;
+
     /// The net, borrowed.
     fn surface(&self) -> SurfaceNet<'_, C>;
 }
@@ -255,6 +282,8 @@ impl<C: Coord> Surface<C> for SurfaceNet<'_, C> {
 }
 
 impl<C: Coord, S: Surface<C> + ?Sized> Surface<C> for &S {
+    const SHAPE: Shape = S::SHAPE;
+
     fn surface(&self) -> SurfaceNet<'_, C> {
         (**self).surface()
     }

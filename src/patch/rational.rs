@@ -3,7 +3,8 @@
 //! The patch is Σ w_i B_i P_i / Σ w_i B_i. Only ratios of weights matter.
 
 use super::{
-    Curve, NetError, RationalCurveNet, RationalTensorNet, RationalTriangleNet, Surface, SurfaceNet, Tensor, Triangle,
+    Curve, NetError, RationalCurveNet, RationalTensorNet, RationalTriangleNet, Shape, Surface, SurfaceNet, Tensor,
+    Triangle,
 };
 use crate::geometry::{Affine, GeometryError, Perspective, Point3};
 use crate::num::{Coord, I16F16};
@@ -153,12 +154,16 @@ impl<const M: usize, const H: usize, C: Coord> RationalTensor<M, H, C> {
 }
 
 impl<const N: usize, const LEN: usize, C: Coord> Surface<C> for RationalTriangle<N, LEN, C> {
+    const SHAPE: Shape = Shape::of(true, true, N);
+
     fn surface(&self) -> SurfaceNet<'_, C> {
         SurfaceNet::RationalTriangle(self.net())
     }
 }
 
 impl<const M: usize, const H: usize, C: Coord> Surface<C> for RationalTensor<M, H, C> {
+    const SHAPE: Shape = Shape::of(false, true, if M > H { M - 1 } else { H - 1 });
+
     fn surface(&self) -> SurfaceNet<'_, C> {
         SurfaceNet::RationalTensor(self.net())
     }

@@ -1,7 +1,7 @@
 //! Tensor-product Bézier patches that own their control points.
 
 use super::net::{bounds_of, check_range, check_range_i16f16, check_range_i32f32};
-use super::{MAX_DEGREE, NetError, Surface, SurfaceNet, TensorNet};
+use super::{MAX_DEGREE, NetError, Shape, Surface, SurfaceNet, TensorNet};
 use crate::geometry::{Affine, Bounds, GeometryError, Point3};
 use crate::num::{Coord, I16F16, I32F32};
 
@@ -140,6 +140,8 @@ impl<const M: usize, const H: usize, C: Coord> Tensor<M, H, C> {
 }
 
 impl<const M: usize, const H: usize, C: Coord> Surface<C> for Tensor<M, H, C> {
+    const SHAPE: Shape = Shape::of(false, false, if M > H { M - 1 } else { H - 1 });
+
     fn surface(&self) -> SurfaceNet<'_, C> {
         SurfaceNet::Tensor(self.net())
     }

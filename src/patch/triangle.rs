@@ -1,7 +1,7 @@
 //! Triangular Bézier patches that own their control points.
 
 use super::net::{bounds_of, check_range, check_range_i16f16, check_range_i32f32};
-use super::{MAX_DEGREE, NetError, Surface, SurfaceNet, TriangleNet, triangle_index, triangle_len};
+use super::{MAX_DEGREE, NetError, Shape, Surface, SurfaceNet, TriangleNet, triangle_index, triangle_len};
 use crate::geometry::{Affine, Bounds, GeometryError, Point3};
 use crate::num::{Coord, I16F16, I32F32};
 
@@ -139,6 +139,8 @@ impl<const N: usize, const LEN: usize, C: Coord> Triangle<N, LEN, C> {
 }
 
 impl<const N: usize, const LEN: usize, C: Coord> Surface<C> for Triangle<N, LEN, C> {
+    const SHAPE: Shape = Shape::of(true, false, N);
+
     fn surface(&self) -> SurfaceNet<'_, C> {
         SurfaceNet::Triangle(self.net())
     }

@@ -12,10 +12,12 @@ use crate::forward::Budget;
 use crate::forward::{Form, Fraction, LatticeError, row_count};
 use crate::geometry::Point3;
 use crate::num::{Coord, I16F16};
-use crate::patch::{Barycentric, CurveNet, Parameter, SurfaceNet};
+use crate::patch::{Barycentric, CurveNet, Parameter, Surface, SurfaceNet};
+use core::marker::PhantomData;
 
 /// Draws the lines of one patch.
-pub(super) struct LineDrawing<'a, 'b, P: Paint> {
+pub(super) struct LineDrawing<'a, 'b, S, P: Paint> {
+    pub(super) kind: PhantomData<S>,
     pub(super) tile: &'a mut Tile<'b, P::Pixel>,
     pub(super) paint: &'a P,
     pub(super) patch: usize,
@@ -63,7 +65,7 @@ pub(super) fn families(net: SurfaceNet<'_>) -> u8 {
     if net.is_triangle() { 3 } else { 2 }
 }
 
-impl<'a, P: Paint> LineDrawing<'a, '_, P> {
+impl<'a, S: Surface, P: Paint> LineDrawing<'a, '_, S, P> {
     pub(super) fn draw(&mut self, style: Style) {
         match style {
             Style::Wire(lines) => self.wire(lines),
@@ -76,7 +78,7 @@ impl<'a, P: Paint> LineDrawing<'a, '_, P> {
     fn walk(&mut self, plan: &Plan<'_>, rows: Rows) {
         let (area, colour, depth) = self.tile.parts();
         let window = self.window;
-        plan.draw(&mut Pen {
+        plan.draw::<S>(&mut Pen {
             area,
             depth,
             window,

@@ -9,7 +9,7 @@ use super::plan::fits;
 use crate::forward::{Estimate, PieceSlopes, Sampling};
 use crate::geometry::Point3;
 use crate::num::I16F16;
-use crate::patch::{MAX_DEGREE, SurfaceNet};
+use crate::patch::{MAX_DEGREE, Surface, SurfaceNet};
 use crate::subdivide::{Cut, Direction, Half, Quarter, Source, part_net};
 
 /// The most points of a polynomial tensor-product piece: about what a bicubic can have with 32-bit accumulators, which
@@ -79,21 +79,27 @@ pub const fn stack_bytes(net: SurfaceNet<'_>) -> usize {
 }
 
 /// Walks the pieces of a patch.
-pub(super) fn each_piece(net: SurfaceNet<'_>, pieces: &mut dyn Pieces) {
-    match (net.points().len(), net.weights().is_some()) {
-        (..=16, false) => with_room::<16, 0, 7>(net, pieces),
-        (..=16, true) => with_room::<16, 16, 7>(net, pieces),
-        (..=21, false) => with_room::<21, 0, 7>(net, pieces),
-        (..=21, true) => with_room::<21, 21, 7>(net, pieces),
-        (..=45, false) => with_room::<45, 0, 9>(net, pieces),
-        (..=45, true) => with_room::<45, 45, 9>(net, pieces),
-        (_, false) => with_room::<81, 0, 9>(net, pieces),
-        (_, true) => with_room::<81, 81, 9>(net, pieces),
+pub(super) fn each_piece<S: Surface>(net: SurfaceNet<'_>, pieces: &mut dyn Pieces) {
+    let shape = S::SHAPE;
+    match (net.points().len(), shape.rational && net.weights().is_some()) {
+        (..=16, false) => with_room::<S, 16, 0, 7>(net, pieces),
+        (..=16, true) => with_room::<S, 16, 16, 7>(net, pieces),
+        // More points than degree 3 has.
+        _ if shape.degree < 4 => {}
+        (..=21, false) => with_room::<S, 21, 0, 7>(net, pieces),
+        (..=21, true) => with_room::<S, 21, 21, 7>(net, pieces),
+        (..=45, false) => with_room::<S, 45, 0, 9>(net, pieces),
+        (..=45, true) => with_room::<S, 45, 45, 9>(net, pieces),
+        (_, false) => with_room::<S, 81, 0, 9>(net, pieces),
+        (_, true) => with_room::<S, 81, 81, 9>(net, pieces),
     }
 }
 
 #[inline(never)]
-fn with_room<const LEN: usize, const WEIGHTS: usize, const SLOTS: usize>(net: SurfaceNet<'_>, pieces: &mut dyn Pieces) {
+fn with_room<S: Surface, const LEN: usize, const WEIGHTS: usize, const SLOTS: usize>(
+    net: SurfaceNet<'_>,
+    pieces: &mut dyn Pieces,
+) {
     let mut points = [[Point3::ORIGIN; LEN]; SLOTS];
     let mut weights = [[I16F16::ONE; WEIGHTS]; SLOTS];
     let len = net.points().len();
@@ -108,7 +114,7 @@ fn with_room<const LEN: usize, const WEIGHTS: usize, const SLOTS: usize>(net: Su
         depth: 0,
         deepest: SLOTS - 1,
     };
-    tree.walk(pieces);
+    tree.walk::<S>(pieces);
 }
 
 /// How a piece is split.
@@ -148,41 +154,43 @@ struct Tree<'n, 's> {
 }
 
 impl Tree<'_, '_> {
-    fn walk(&mut self, pieces: &mut dyn Pieces) {
+    fn walk<S: Surface>(&mut self, pieces: &mut dyn Pieces) {
         loop {
-            let split = self.visit(pieces);
+            let split = self.visit::<S>(pieces);
             if let (Some(split), Some(way)) = (split, self.path.get_mut(self.depth)) {
                 *way = (split, 0);
                 self.depth += 1;
-                self.enter();
+                self.enter::<S>();
                 pieces.split();
-            } else if !self.advance() {
+            } else if !self.advance::<S>() {
                 return;
             }
         }
     }
 
     /// Draws the current piece, or says how it is split.
-    fn visit(&mut self, pieces: &mut dyn Pieces) -> Option<Split> {
+    fn visit<S: Surface>(&mut self, pieces: &mut dyn Pieces) -> Option<Split> {
         let (depth, deepest) = (self.depth, self.deepest);
         let (piece, slot, weight_slot) = self.current();
         if !pieces.wants(piece) {
             return None;
         }
         let slopes = PieceSlopes::of(piece);
-        let direct = !piece.is_triangle() && piece.weights().is_none();
+        let (triangles, rational) =
+            (S::SHAPE.triangles && piece.is_triangle(), S::SHAPE.rational && piece.weights().is_some());
+        let direct = !triangles && !rational;
         if depth < deepest && direct && slopes.least_points() > LARGEST {
             return Some(longer(piece));
         }
-        let sampling = slopes.sampling(piece, true);
+        let sampling = slopes.sampling::<S>(piece, true);
         let split = if depth == deepest {
             None
-        } else if (piece.degrees() != (3, 3) || !direct) && !fits(piece, sampling) {
-            Some(if piece.is_triangle() { Split::Triangles } else { Split::Squares })
+        } else if (piece.degrees() != (3, 3) || !direct) && !fits::<S>(piece, sampling) {
+            Some(if triangles { Split::Triangles } else { Split::Squares })
         } else if direct {
             (sampling.points(false) > LARGEST).then(|| longer(piece))
         } else {
-            split_that_pays(source(piece, depth), sampling, slot, weight_slot)
+            split_that_pays::<S>(source(piece, depth), sampling, slot, weight_slot)
         };
         if split.is_none() {
             pieces.piece(piece, sampling, slot);
@@ -208,23 +216,23 @@ impl Tree<'_, '_> {
     }
 
     /// Cuts the current piece from the one above it; whether there is one.
-    fn enter(&mut self) -> bool {
+    fn enter<S: Surface>(&mut self) -> bool {
         let Some(level) = self.depth.checked_sub(1) else { return false };
         let Some(part) = self.path.get(level).and_then(|(split, part)| split.part(*part)) else { return false };
         self.depth = level;
         let (parent, slot, weight_slot) = self.current();
-        source(parent, level).1.cut(part, slot, weight_slot);
+        source(parent, level).1.cut_of::<S>(part, slot, weight_slot);
         self.depth = level + 1;
         true
     }
 
     /// Goes to the next piece that was not visited; whether there is one.
-    fn advance(&mut self) -> bool {
+    fn advance<S: Surface>(&mut self) -> bool {
         while let Some(level) = self.depth.checked_sub(1) {
             if let Some((_, part)) = self.path.get_mut(level) {
                 *part += 1;
             }
-            if self.enter() {
+            if self.enter::<S>() {
                 return true;
             }
             self.depth = level;
@@ -245,7 +253,7 @@ fn longer(piece: SurfaceNet<'_>) -> Split {
 }
 
 /// The split that pays, if any; looks at the parts in `slot`.
-fn split_that_pays(
+fn split_that_pays<S: Surface>(
     (piece, source): (SurfaceNet<'_>, Source<'_>),
     own: Sampling,
     slot: &mut [Point3],
@@ -259,12 +267,12 @@ fn split_that_pays(
     let split = if triangle { Split::Triangles } else { longer(piece) };
     let (mut sum, mut index) = (0, 0);
     while let Some(part) = split.part(index) {
-        source.cut(part, slot, weights);
+        source.cut_of::<S>(part, slot, weights);
         let net = part_net(piece, slot, weights);
-        let sampling = PieceSlopes::of(net).sampling(net, true);
+        let sampling = PieceSlopes::of(net).sampling::<S>(net, true);
         sum += sampling.points(triangle) + SETUP;
         // Weights of parts have more bits than those of the patch may have had.
-        if sum >= limit || (rational && !fits(net, sampling)) {
+        if sum >= limit || (rational && !fits::<S>(net, sampling)) {
             return None;
         }
         index += 1;

@@ -8,7 +8,7 @@ use crate::forward::{
 };
 use crate::geometry::Point3;
 use crate::num::Word;
-use crate::patch::SurfaceNet;
+use crate::patch::{Surface, SurfaceNet};
 use crate::subdivide::part_net;
 
 /// Which walker draws a lattice. Order 4 holds cubics, 6 quintics, 9 everything.
@@ -64,17 +64,23 @@ impl<'a> Plan<'a> {
 }
 
 impl Plan<'_> {
-    /// Walks the lattice with a pen.
-    pub(super) fn draw(&self, pen: &mut Pen<'_>) {
-        match (self.width, self.form.weights().is_some()) {
-            (Width::Cubic32, false) => run::<_, _, 4>(Residual::<i32>::of(&self.budget), self, pen),
-            (Width::Cubic64, false) => run::<_, _, 4>(Residual::<i64>::of(&self.budget), self, pen),
-            (Width::Quintic64, false) => run::<_, _, 6>(Residual::<i64>::of(&self.budget), self, pen),
-            (Width::Full64, false) => run::<_, _, 9>(Residual::<i64>::of(&self.budget), self, pen),
-            (Width::Full128, false) => run::<_, _, 9>(Residual::<i128>::of(&self.budget), self, pen),
-            (Width::Cubic64, true) => run_quotient::<i64, _, 4>(self, NormalPen(pen)),
-            (_, true) if self.form.degree() < 4 => run_quotient::<i128, _, 4>(self, NormalPen(pen)),
-            (_, true) => run_quotient::<i128, _, 9>(self, NormalPen(pen)),
+    /// Walks the lattice, which is of a net of type `S`, with a pen.
+    pub(super) fn draw<S: Surface>(&self, pen: &mut Pen<'_>) {
+        let (budget, degree) = (&self.budget, if S::SHAPE.degree < 4 { 3 } else { self.form.degree() });
+        if S::SHAPE.rational && self.form.weights().is_some() {
+            return match self.width {
+                Width::Cubic64 => run_quotient::<i64, _, 4>(self, NormalPen(pen)),
+                _ if degree < 4 => run_quotient::<i128, _, 4>(self, NormalPen(pen)),
+                _ => run_quotient::<i128, _, 9>(self, NormalPen(pen)),
+            };
+        }
+        match self.width {
+            Width::Cubic32 => run::<_, _, 4>(Residual::<i32>::of(budget), self, pen),
+            Width::Cubic64 => run::<_, _, 4>(Residual::<i64>::of(budget), self, pen),
+            _ if degree < 4 => run::<_, _, 4>(Residual::<i128>::of(budget), self, pen),
+            Width::Quintic64 => run::<_, _, 6>(Residual::<i64>::of(budget), self, pen),
+            Width::Full64 => run::<_, _, 9>(Residual::<i64>::of(budget), self, pen),
+            Width::Full128 => run::<_, _, 9>(Residual::<i128>::of(budget), self, pen),
         }
     }
 }
@@ -100,29 +106,29 @@ fn run_quotient<W: Word, V: Visit, const R: usize>(plan: &Plan<'_>, visitor: V) 
 ///
 /// # Errors
 /// [`LatticeError::Budget`] where 128 bits are too few, [`LatticeError::Steps`] above 2^24 steps.
-pub(super) fn each_lattice(
+pub(super) fn each_lattice<S: Surface>(
     net: SurfaceNet<'_>,
     sampling: Sampling,
     room: &mut [Point3],
     f: &mut dyn FnMut(&Plan<'_>, u32),
 ) -> Result<(), LatticeError> {
-    let sampling = settled(net, sampling);
-    one_lattice(net, sampling, false, room, f)?;
-    if sampling.centres { one_lattice(net, sampling, true, room, f) } else { Ok(()) }
+    let sampling = settled::<S>(net, sampling);
+    one_lattice::<S>(net, sampling, false, room, f)?;
+    if sampling.centres { one_lattice::<S>(net, sampling, true, room, f) } else { Ok(()) }
 }
 
 /// The sampling without the centres, at more steps, where they need more than 64 bits.
-fn settled(net: SurfaceNet<'_>, sampling: Sampling) -> Sampling {
+fn settled<S: Surface>(net: SurfaceNet<'_>, sampling: Sampling) -> Sampling {
     if !sampling.centres {
         return sampling;
     }
     let form = Form::surface(net, (sampling.steps.r(), sampling.steps.s())).centres();
-    let fits = lattice(net, &form).is_ok_and(|(_, width)| width != Width::Full128);
-    if fits { sampling } else { PieceSlopes::of(net).sampling(net, false) }
+    let fits = lattice::<S>(net, &form).is_ok_and(|(_, width)| width != Width::Full128);
+    if fits { sampling } else { PieceSlopes::of(net).sampling::<S>(net, false) }
 }
 
 #[inline(never)]
-fn one_lattice(
+fn one_lattice<S: Surface>(
     net: SurfaceNet<'_>,
     sampling: Sampling,
     centred: bool,
@@ -134,7 +140,7 @@ fn one_lattice(
         if centred { form.centres() } else { form }
     };
     let (r, s) = (sampling.steps.r(), sampling.steps.s());
-    let (PieceBudget { budget, halvings }, width) = lattice(net, &form(net, (r, s)))?;
+    let (PieceBudget { budget, halvings }, width) = lattice::<S>(net, &form(net, (r, s)))?;
     let rounded = round_net(net, (budget.fraction_bits, halvings), room);
     let turn = PieceSlopes::of(net).turn(net.is_triangle(), sampling.centres);
     let form = form(rounded, (1, 1)).turned(turn, if turn == 1 { (s, r) } else { (r, s) });
@@ -158,15 +164,15 @@ fn round_net<'a>(net: SurfaceNet<'a>, (bits, halvings): (u32, u32), room: &'a mu
 }
 
 /// Whether a piece need not be split to be walked: a polynomial one in 64 bits, a rational one at all.
-pub(super) fn fits(net: SurfaceNet<'_>, sampling: Sampling) -> bool {
-    let Sampling { steps, .. } = settled(net, sampling);
-    let corners = lattice(net, &Form::surface(net, (steps.r(), steps.s())));
+pub(super) fn fits<S: Surface>(net: SurfaceNet<'_>, sampling: Sampling) -> bool {
+    let Sampling { steps, .. } = settled::<S>(net, sampling);
+    let corners = lattice::<S>(net, &Form::surface(net, (steps.r(), steps.s())));
     corners.is_ok_and(|(_, width)| width != Width::Full128 || net.weights().is_some())
 }
 
 /// The budget of a lattice of a piece and the walker that suits it.
-fn lattice(net: SurfaceNet<'_>, form: &Form<'_>) -> Result<(PieceBudget, Width), LatticeError> {
-    if form.weights().is_some() {
+fn lattice<S: Surface>(net: SurfaceNet<'_>, form: &Form<'_>) -> Result<(PieceBudget, Width), LatticeError> {
+    if S::SHAPE.rational && form.weights().is_some() {
         // Tangents, where they are wanted, were checked with the scene.
         let plan = Plan::of(*form, true).or_else(|_| Plan::of(*form, false))?;
         return Ok((PieceBudget { budget: plan.budget, halvings: 0 }, plan.width));
@@ -186,9 +192,9 @@ fn lattice(net: SurfaceNet<'_>, form: &Form<'_>) -> Result<(PieceBudget, Width),
 ///
 /// # Errors
 /// What the lattice of the patch (rational: undivided; polynomial: split as deep as it goes) does not fit.
-pub(super) fn check_pieces(net: SurfaceNet<'_>, normals: bool) -> Result<(), LatticeError> {
-    let sampling = PieceSlopes::of(net).sampling(net, false);
-    if net.weights().is_some() {
+pub(super) fn check_pieces<S: Surface>(net: SurfaceNet<'_>, normals: bool) -> Result<(), LatticeError> {
+    let sampling = PieceSlopes::of(net).sampling::<S>(net, false);
+    if S::SHAPE.rational && net.weights().is_some() {
         return Plan::of(Form::surface(net, (sampling.steps.r(), sampling.steps.s())), normals).map(drop);
     }
     deepest_budget(net, sampling, depth(net.points().len()) as u32)

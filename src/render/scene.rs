@@ -20,6 +20,7 @@ use crate::geometry::{Bounds, Point3};
 use crate::num::{Coord, I16F16};
 use crate::patch::{Surface, SurfaceNet};
 use crate::subdivide::PatchTopology;
+use core::marker::PhantomData;
 
 /// Rounded coordinates of a box: what pixels its points can fall on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -141,7 +142,7 @@ impl<'a, S: Surface> Scene<'a, S> {
 
     fn check_exact(&self) -> Result<(), RenderError> {
         for (index, patch) in self.patches.iter().enumerate() {
-            check(patch.surface(), self.style).map_err(|error| RenderError::Patch { index, error })?;
+            check::<S>(patch.surface(), self.style).map_err(|error| RenderError::Patch { index, error })?;
         }
         Ok(())
     }
@@ -273,7 +274,8 @@ impl<'a, S: Surface> Scene<'a, S> {
         self.each_visible(tile, |tile, patch, net| {
             statistics.patches += 1;
             if self.style.lines().is_some() {
-                let mut lines = LineDrawing { tile, paint, patch, net, window: self.window, points: 0 };
+                let mut lines =
+                    LineDrawing::<S, P> { kind: PhantomData, tile, paint, patch, net, window: self.window, points: 0 };
                 lines.draw(self.style);
                 statistics.points += lines.points;
             } else if let Some(patch) = self.grid_patch(patch) {
@@ -318,12 +320,26 @@ impl<'a, S: Surface> Scene<'a, S> {
     ) {
         let inward = self.topology.get(patch).is_some_and(PatchTopology::is_inward);
         let shading = Shading { light: &self.light, style: self.style, window: self.window };
-        each_piece(net, &mut Filling { shading, cull: self.cull, tile, paint, patch, inward, ink, statistics });
+        each_piece::<S>(
+            net,
+            &mut Filling::<S, P> {
+                kind: PhantomData,
+                shading,
+                cull: self.cull,
+                tile,
+                paint,
+                patch,
+                inward,
+                ink,
+                statistics,
+            },
+        );
     }
 }
 
 /// The pieces of one patch on their way into a tile.
-struct Filling<'s, 'b, 't, P: Paint> {
+struct Filling<'s, 'b, 't, S, P: Paint> {
+    kind: PhantomData<S>,
     shading: Shading<'s>,
     cull: Cull,
     tile: &'t mut Tile<'b, P::Pixel>,
@@ -334,7 +350,7 @@ struct Filling<'s, 'b, 't, P: Paint> {
     statistics: &'t mut Statistics,
 }
 
-impl<P: Paint> Filling<'_, '_, '_, P> {
+impl<S: Surface, P: Paint> Filling<'_, '_, '_, S, P> {
     /// Draws one lattice of a piece.
     fn lattice(&mut self, piece: SurfaceNet<'_>, plan: &Plan<'_>, halvings: u32) {
         let (area, colour, depth) = self.tile.parts();
@@ -351,7 +367,7 @@ impl<P: Paint> Filling<'_, '_, '_, P> {
             side,
             tangents: Tangents::new(piece, form),
         };
-        plan.draw(&mut Pen {
+        plan.draw::<S>(&mut Pen {
             area,
             depth,
             window,
@@ -366,7 +382,7 @@ impl<P: Paint> Filling<'_, '_, '_, P> {
     }
 }
 
-impl<P: Paint> Pieces for Filling<'_, '_, '_, P> {
+impl<S: Surface, P: Paint> Pieces for Filling<'_, '_, '_, S, P> {
     fn wants(&mut self, piece: SurfaceNet<'_>) -> bool {
         meets(piece, &self.tile.area()) && (self.cull == Cull::None || !faces_away(&piece, self.inward))
     }
@@ -374,7 +390,7 @@ impl<P: Paint> Pieces for Filling<'_, '_, '_, P> {
     fn piece(&mut self, piece: SurfaceNet<'_>, sampling: Sampling, room: &mut [Point3]) {
         self.statistics.pieces += 1;
         // Checked in `new`, so it cannot fail here.
-        let _ = each_lattice(piece, sampling, room, &mut |plan, halvings| self.lattice(piece, plan, halvings));
+        let _ = each_lattice::<S>(piece, sampling, room, &mut |plan, halvings| self.lattice(piece, plan, halvings));
     }
 
     fn split(&mut self) {
@@ -387,16 +403,16 @@ impl<P: Paint> Pieces for Filling<'_, '_, '_, P> {
 pub(crate) fn fits_every_style<S: Surface>(patches: &[S]) -> Result<(), RenderError> {
     for (index, patch) in patches.iter().enumerate() {
         let net = patch.surface();
-        let fits = check_pieces(net, true).and_then(|()| any_family(net));
+        let fits = check_pieces::<S>(net, true).and_then(|()| any_family(net));
         fits.map_err(|error| RenderError::Patch { index, error })?;
     }
     Ok(())
 }
 
 /// Every lattice that the style will need fits the engine.
-fn check(net: SurfaceNet<'_>, style: Style) -> Result<(), LatticeError> {
+fn check<S: Surface>(net: SurfaceNet<'_>, style: Style) -> Result<(), LatticeError> {
     if style.lines() != Some(false) {
-        check_pieces(net, style.needs_normals())?;
+        check_pieces::<S>(net, style.needs_normals())?;
     }
     if let Style::Wire(lines) = style {
         for turn in 0..families(net) {

@@ -6,7 +6,7 @@
 use super::exact::{Direction, Half, Quarter, halve_tensor, quarter_triangle};
 use crate::geometry::Point3;
 use crate::num::{Coord, I16F16, Word, div_half_up};
-use crate::patch::{MAX_DEGREE, RationalTensorNet, RationalTriangleNet, SurfaceNet, TensorNet, TriangleNet};
+use crate::patch::{MAX_DEGREE, RationalTensorNet, RationalTriangleNet, Surface, SurfaceNet, TensorNet, TriangleNet};
 
 /// The most control points of a net.
 const MOST: usize = (MAX_DEGREE + 1) * (MAX_DEGREE + 1);
@@ -78,11 +78,16 @@ impl<'a> Source<'a> {
     ///
     /// Stack: 0.2 KB for nets of up to 16 points, 0.8 KB above, 2.2 KB for rational ones.
     pub(crate) fn cut(self, part: Cut, points: &mut [Point3], weights: &mut [I16F16]) {
+        self.cut_of::<SurfaceNet<'_>>(part, points, weights);
+    }
+
+    /// [`cut`](Self::cut) of a net of type `S`.
+    pub(crate) fn cut_of<S: Surface>(self, part: Cut, points: &mut [Point3], weights: &mut [I16F16]) {
         match self.weights {
-            Some(by) => self.cut_weighted(by, part, points, weights),
-            None if self.cut_bicubic(part, points) => {}
-            None if self.points.len() <= 16 => self.cut_points::<16>(part, points),
-            None => self.cut_points::<MOST>(part, points),
+            Some(by) if S::SHAPE.rational => self.cut_weighted(by, part, points, weights),
+            _ if self.cut_bicubic(part, points) => {}
+            _ if self.points.len() <= 16 => self.cut_points::<16>(part, points),
+            _ => self.cut_points::<MOST>(part, points),
         }
     }
 

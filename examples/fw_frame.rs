@@ -1,0 +1,108 @@
+//! A 320 × 240 colour frame without a display: the teapot in bands of 16 rows, streamed row by row out of the board to a
+//! PPM on standard output (`mps2-an386`, semihosting); at the end the RAM that it took, on standard error.
+//!
+//! ```sh
+//! cargo run --release --target thumbv7em-none-eabihf --example fw_frame > teapot.ppm
+//! FW_FRAME_FILL=grid cargo run --release --target thumbv7em-none-eabihf --example fw_frame > teapot.ppm
+//! ```
+//!
+//! On a host the same calls write the same bytes; `tests/firmware_frame.rs` compares them. For your board, replace the
+//! semihosting by your display's contiguous writes.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[path = "data/frame.rs"]
+pub(crate) mod frame;
+#[path = "data/teapot.rs"]
+pub(crate) mod teapot;
+
+/// Exact points, or a grid of facets.
+#[allow(dead_code, reason = "tests draw both")]
+const GRID: bool = matches!(option_env!("FW_FRAME_FILL"), Some(fill) if matches!(fill.as_bytes(), b"grid"));
+
+#[cfg(not(target_os = "none"))]
+fn main() -> std::io::Result<()> {
+    use std::io::Write;
+    let mut bytes = frame::PPM_HEAD.to_vec();
+    let mut buffers = Box::new(frame::Buffers::new());
+    let drawn = frame::draw(GRID, &mut buffers, |row| bytes.extend_from_slice(&frame::ppm_row(row)));
+    drawn.ok_or_else(|| std::io::Error::other("the frame was refused"))?;
+    std::io::stdout().write_all(&bytes)
+}
+
+#[cfg(all(target_os = "none", target_arch = "arm"))]
+mod board {
+    use crate::frame;
+    use core::cell::RefCell;
+    use core::fmt::Write;
+    use cortex_m::interrupt::Mutex;
+    use cortex_m_semihosting::{debug, hio};
+
+    static BUFFERS: Mutex<RefCell<frame::Buffers>> = Mutex::new(RefCell::new(frame::Buffers::new()));
+    const PAINT: u32 = 0xA5A5_5A5A;
+
+    unsafe extern "C" {
+        static mut __sdata: u32;
+        static mut __sheap: u32;
+        static mut _stack_start: u32;
+    }
+
+    /// The first word of RAM, the first after the statics, the end of the stack.
+    fn memory() -> [usize; 3] {
+        // Addresses alone.
+        [(&raw const __sdata) as usize, (&raw const __sheap) as usize, (&raw const _stack_start) as usize]
+    }
+
+    #[inline(never)]
+    fn paint() {
+        let local = 0_u32;
+        let here = (&raw const local) as usize & !3;
+        for address in (memory()[1]..here - 64).step_by(4) {
+            // SAFETY: RAM between the statics and this frame, which nobody uses.
+            unsafe { (address as *mut u32).write_volatile(PAINT) };
+        }
+    }
+
+    fn used() -> usize {
+        let [start, statics, end] = memory();
+        // SAFETY: the same words.
+        let is_painted = |address: &usize| unsafe { (*address as *const u32).read_volatile() } == PAINT;
+        let lowest = (statics..end).step_by(4).find(|address| !is_painted(address)).unwrap_or(end);
+        (statics - start) + (end - lowest)
+    }
+
+    fn run() -> Option<()> {
+        let mut out = hio::hstdout().ok()?;
+        out.write_all(frame::PPM_HEAD).ok()?;
+        let mut sent = true;
+        cortex_m::interrupt::free(|token| {
+            let mut buffers = BUFFERS.borrow(token).try_borrow_mut().ok()?;
+            frame::draw(crate::GRID, &mut buffers, |row| sent &= out.write_all(&frame::ppm_row(row)).is_ok())
+        })?;
+        writeln!(hio::hstderr().ok()?, "RAM {}", used()).ok()?;
+        sent.then_some(())
+    }
+
+    #[cortex_m_rt::entry]
+    fn main() -> ! {
+        paint();
+        leave(run().is_some())
+    }
+
+    fn leave(done: bool) -> ! {
+        debug::exit(if done { debug::EXIT_SUCCESS } else { debug::EXIT_FAILURE });
+        loop {
+            cortex_m::asm::wfi();
+        }
+    }
+
+    #[panic_handler]
+    fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+        leave(false)
+    }
+}
+
+#[cfg(all(target_os = "none", not(target_arch = "arm")))]
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    loop {}
+}
