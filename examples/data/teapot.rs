@@ -11,6 +11,7 @@ pub(crate) const BLANK: BicubicPatch = embedded_surfaces::const_net!(BicubicPatc
 
 /// The patches as `map` shows them: map the vertices by a [`View`](embedded_surfaces::geometry::View) fitted to
 /// [`vertices`].
+#[allow(dead_code, reason = "each example uses its part")]
 pub(crate) fn patches(map: &Affine) -> Result<[BicubicPatch; 32], GeometryError> {
     let mut out = [BLANK; 32];
     map_into(map, &mut out)?;

@@ -71,7 +71,7 @@ pub const fn stack_bytes(net: SurfaceNet<'_>) -> usize {
         ..=3 if rational => 5500,
         _ if rational => 20_500,
         ..=3 => 1650,
-        ..=5 => 4300,
+        4..=5 => 4300,
         _ if net.is_triangle() => 6600,
         _ => 13_000,
     };
