@@ -148,7 +148,7 @@ fn curves(sum: &mut Sum) {
         let lattice = CurveLattice::rational(net, n);
         sum.add(lattice.map(|lattice| *lattice.budget()));
         if let Ok(lattice) = lattice {
-            walk(sum, &lattice);
+            walk(sum, &lattice, n);
         }
     }
 }
@@ -158,15 +158,15 @@ fn polynomial_curve(sum: &mut Sum, net: CurveNet<'_>) {
         let lattice = CurveLattice::new(net, n);
         sum.add(lattice.map(|lattice| *CurveLattice::budget(&lattice)));
         if let Ok(lattice) = lattice {
-            walk(sum, &lattice);
+            walk(sum, &lattice, n);
         }
     }
 }
 
-fn walk(sum: &mut Sum, lattice: &CurveLattice<'_>) {
+fn walk(sum: &mut Sum, lattice: &CurveLattice<'_>, n: u32) {
     CurveLattice::points(lattice).take(20).for_each(|point| sum.add(point));
     let steps = CurveLattice::unit_steps(lattice);
-    if lattice.budget().scale < 1 << 60 {
+    if n < 1000 {
         CurveLattice::for_each(lattice, |point| sum.add(point));
         lattice.into_iter().for_each(|point| sum.add(point));
     }

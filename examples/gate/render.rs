@@ -89,7 +89,7 @@ fn scene(sum: &mut Sum, patches: &[SurfaceNet<'_>], style: Style) {
         sum.add((covered, places));
     }
     let area = Area { x: 3, y: 4, width: 50, height: 40 };
-    let small = Tile::new(area, &mut colour[..hide(9)], &mut depth, 0).map(|_| ());
+    let small = Tile::new(area, &mut colour[..9], &mut depth, 0).map(|_| ());
     let empty = Tile::new(Area { width: hide(0), ..area }, &mut colour, &mut depth, 0).map(|_| ());
     sum.add([small, empty]);
     frame(sum, scene, (&mut colour, &mut depth));
