@@ -68,6 +68,7 @@ pub(super) fn calls(sum: &mut Sum) {
     hide([Accumulator::I32, Accumulator::I64, Accumulator::I128]).map(|word| sum.add(Err::<(), _>(word)));
 }
 
+#[inline(never)]
 fn nets() -> [SurfaceNet<'static>; 7] {
     let (cubic, wave, uneven, flat) = hide((&data::TRIANGLE, &data::BICUBIC, &data::UNEVEN, &data::BILINEAR));
     let (quintic, weighted, octant) = hide((&data::QUINTIC, &data::WEIGHTED, &data::OCTANT));
@@ -76,6 +77,7 @@ fn nets() -> [SurfaceNet<'static>; 7] {
     [a, b, c, d, e, weighted.surface(), octant.surface()]
 }
 
+#[inline(never)]
 fn steps(sum: &mut Sum) {
     for n in hide([0, 1, 1 << 24, (1 << 24) + 1]) {
         sum.add(Steps::uniform(n));
@@ -88,6 +90,7 @@ fn steps(sum: &mut Sum) {
     }
 }
 
+#[inline(never)]
 fn lattices(sum: &mut Sum, net: SurfaceNet<'_>, steps: Steps) {
     for lattice in [Lattice::new(net, steps), Lattice::centres(net, steps)] {
         sum.add(lattice.map(|lattice| (*Lattice::budget(&lattice), Lattice::point_count(&lattice))));
@@ -104,6 +107,7 @@ fn lattices(sum: &mut Sum, net: SurfaceNet<'_>, steps: Steps) {
 }
 
 /// Degree 8 by 8 in 128 bits, fractions in all words, and weights that ask for many steps.
+#[inline(never)]
 fn extremes(sum: &mut Sum) {
     let high: [Point3; 81] = core::array::from_fn(|k| {
         let k = hide(k as i32);
@@ -125,6 +129,7 @@ fn extremes(sum: &mut Sum) {
     }
 }
 
+#[inline(never)]
 fn limited(sum: &mut Sum, net: SurfaceNet<'_>, steps: Steps) {
     let lattice = Lattice::new(net, steps);
     sum.add(lattice.map(|lattice| *lattice.budget()));
@@ -136,6 +141,7 @@ fn limited(sum: &mut Sum, net: SurfaceNet<'_>, steps: Steps) {
     }
 }
 
+#[inline(never)]
 fn curves(sum: &mut Sum) {
     let (cubic, arc) = hide((&data::CUBIC, &data::ARC));
     let fraction = cubic.points().map(|p| Point3::from_bits(p.x.to_bits() + 1, p.y.to_bits(), p.z.to_bits()));
@@ -153,6 +159,7 @@ fn curves(sum: &mut Sum) {
     }
 }
 
+#[inline(never)]
 fn polynomial_curve(sum: &mut Sum, net: CurveNet<'_>) {
     for n in hide([0, 7, 1 << 24]).into_iter().chain([Steps::curve(net)]) {
         let lattice = CurveLattice::new(net, n);
@@ -163,6 +170,7 @@ fn polynomial_curve(sum: &mut Sum, net: CurveNet<'_>) {
     }
 }
 
+#[inline(never)]
 fn walk(sum: &mut Sum, lattice: &CurveLattice<'_>, n: u32) {
     CurveLattice::points(lattice).take(20).for_each(|point| sum.add(point));
     let steps = CurveLattice::unit_steps(lattice);

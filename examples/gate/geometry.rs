@@ -13,6 +13,7 @@ pub(super) fn calls(sum: &mut Sum) {
     views(sum, &points);
 }
 
+#[inline(never)]
 fn coordinates(sum: &mut Sum, points: &[Point3; 4]) {
     for p in points {
         let array: [I16F16; 3] = Point3::to_array(*p);
@@ -32,6 +33,7 @@ fn coordinates(sum: &mut Sum, points: &[Point3; 4]) {
     sum.add(one.zip(all).map(|(a, b)| Bounds::union(&a, &b)));
 }
 
+#[inline(never)]
 fn maps(sum: &mut Sum, points: &[Point3; 4]) {
     let number = |n: i32| I32F32::from_num(hide(n));
     let scaling = Affine::scaling(number(2), number(-1), number(3));
@@ -51,6 +53,7 @@ fn maps(sum: &mut Sum, points: &[Point3; 4]) {
     }
 }
 
+#[inline(never)]
 fn views(sum: &mut Sum, points: &[Point3; 4]) {
     let turned = View { tilt: Angle::from_degrees(hide(70)), spin: Angle::from_degrees(hide(-20)) };
     for view in [View::default(), turned] {

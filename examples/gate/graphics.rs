@@ -76,6 +76,7 @@ macro_rules! each_colour {
     };
 }
 
+#[inline(never)]
 fn colours(sum: &mut Sum) {
     for shade in hide([0, 77, 128, 254, 255]) {
         each_colour!(sum, shade, rgb: Rgb555 Rgb565 Rgb666 Rgb888 Bgr555 Bgr565 Bgr666 Bgr888; grey: Gray2 Gray4 Gray8);
@@ -87,6 +88,7 @@ fn colours(sum: &mut Sum) {
     }
 }
 
+#[inline(never)]
 fn ramps(sum: &mut Sum) {
     let (stops, short) = hide(([Rgb888::BLACK, Rgb888::RED, Rgb888::WHITE], [Rgb888::CYAN]));
     let tables: [&[&[Rgb888]]; 2] = [&[&stops, &short, &[]], &[]];
@@ -97,6 +99,7 @@ fn ramps(sum: &mut Sum) {
     }
 }
 
+#[inline(never)]
 fn models(sum: &mut Sum) {
     let patches = hide([data::BICUBIC]);
     let solid = [hide(&data::TRIANGLE).surface(), hide(&data::OCTANT).surface()];
@@ -114,6 +117,7 @@ fn models(sum: &mut Sum) {
     }
 }
 
+#[inline(never)]
 fn bands(sum: &mut Sum) {
     let (paint, patches) = (Material { colour: Rgb565::MAGENTA }, hide([data::BICUBIC]));
     let (mut colour, mut depth) = ([Rgb565::BLACK; 64 * 16], [0; 64 * 16]);
@@ -127,6 +131,7 @@ fn bands(sum: &mut Sum) {
     }
 }
 
+#[inline(never)]
 fn curves(sum: &mut Sum) {
     let (cubic, arc) = hide((&data::CUBIC, &data::ARC));
     let by = Point::new(hide(3), hide(-4));
@@ -148,6 +153,7 @@ fn curves(sum: &mut Sum) {
     }
 }
 
+#[inline(never)]
 fn strokes(sum: &mut Sum, curve: BezierCurve<'_>, width: u32, by: Point) {
     let mut stroke = Stroke::new(curve, Gray8::WHITE, width);
     sum.add([Stroke::bounding_box(&stroke), Stroke::translate(&stroke, by).bounding_box()]);

@@ -22,6 +22,7 @@ pub(super) fn calls(sum: &mut Sum) {
     coordinates::<I32F32>(sum);
 }
 
+#[inline(never)]
 fn words<W: Word>(sum: &mut Sum, value: i128) {
     let (a, b): (W, W) = (Word::truncate(value), Word::truncate(hide(0x1234_5678_9abc_def0)));
     let results = [
@@ -36,6 +37,7 @@ fn words<W: Word>(sum: &mut Sum, value: i128) {
     }
 }
 
+#[inline(never)]
 fn coordinates<C: Coord>(sum: &mut Sum) {
     for bits in hide([0, -1, 32767 << 16, 1 << 47, (1 << 58) + 1, i128::MIN]) {
         let coordinate: Option<C> = Coord::from_legal_bits(bits);

@@ -58,6 +58,7 @@ pub(super) fn calls(sum: &mut Sum) {
     hide(errors()).map(|error| sum.add(Err::<(), _>(error)));
 }
 
+#[inline(never)]
 fn settings(sum: &mut Sum) {
     for [x, y, z] in hide([[0, 0, 0], [1, -2, -3], [i16::MIN, i16::MIN, i16::MIN]]) {
         sum.add(Light::towards(x, y, z, hide(33)).map(|light| (Light::direction(&light), Light::ambient(&light))));
@@ -73,6 +74,7 @@ fn errors() -> [RenderError; 2] {
     [RenderError::Patch { index: 3, error }, RenderError::Light]
 }
 
+#[inline(never)]
 fn scene(sum: &mut Sum, patches: &[SurfaceNet<'_>], style: Style) {
     let (mut colour, mut depth) = ([0; 4096], [0; 4096]);
     let Ok(scene) = Scene::new(patches, Light::default(), style) else { return };
@@ -95,6 +97,7 @@ fn scene(sum: &mut Sum, patches: &[SurfaceNet<'_>], style: Style) {
     frame(sum, scene, (&mut colour, &mut depth));
 }
 
+#[inline(never)]
 fn frame(sum: &mut Sum, scene: Scene<'_, SurfaceNet<'_>>, (colour, depth): (&mut [u16], &mut [u16])) {
     for (width, rows) in hide([(50, 11), (50, 0), (0, 3)]) {
         let area = Area { x: 3, y: 4, width, height: 40 };

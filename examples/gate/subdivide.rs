@@ -27,6 +27,7 @@ pub(super) fn calls(sum: &mut Sum) {
     differences(sum);
 }
 
+#[inline(never)]
 fn exact<W: Word + Digest>(sum: &mut Sum) {
     let values: [W; 12] = hide([3, -7, 100, 2, 0, 9, 31, -4, 8, 77, 5, 1]).map(|v| W::truncate(v));
     for half in Half::ALL {
@@ -48,6 +49,7 @@ fn exact<W: Word + Digest>(sum: &mut Sum) {
     }
 }
 
+#[inline(never)]
 fn rounded(sum: &mut Sum) {
     sum.add(Curve::subdivide(hide(&data::CUBIC)));
     sum.add(RationalCurve::subdivide(hide(&data::ARC)));
@@ -61,6 +63,7 @@ fn rounded(sum: &mut Sum) {
     }
 }
 
+#[inline(never)]
 fn depths(sum: &mut Sum, tolerance: Tolerance) {
     let (cubic, arc) = (hide(&data::CUBIC).net(), hide(&data::ARC).net());
     sum.add((CurveNet::depth_for(&cubic, tolerance), CurveNet::is_flat(&cubic, tolerance)));
@@ -73,12 +76,14 @@ fn depths(sum: &mut Sum, tolerance: Tolerance) {
     sum.add(depth_by_edges(hide(&[]), tolerance));
 }
 
+#[inline(never)]
 fn surfaces() -> [SurfaceNet<'static>; 5] {
     let (triangle, wave, uneven) = hide((&data::TRIANGLE, &data::BICUBIC, &data::UNEVEN));
     let (weighted, octant) = hide((&data::WEIGHTED, &data::OCTANT));
     [triangle.surface(), wave.surface(), uneven.surface(), weighted.surface(), octant.surface()]
 }
 
+#[inline(never)]
 fn differences(sum: &mut Sum) {
     let (cubic, arc) = (hide(&data::CUBIC).net(), hide(&data::ARC).net());
     sum.add([CurveNet::first_difference(&cubic), CurveNet::second_difference(&cubic)]);

@@ -180,7 +180,13 @@ fn middle<W: Word>(values: &mut [W], degree: usize) {
     for j in 0..=degree {
         let last = degree - j;
         for k in 0..last.div_ceil(2) {
-            values.swap(triangle_index(j, k), triangle_index(j, last - k));
+            let pair = [triangle_index(j, k), triangle_index(j, last - k)];
+            let [Some(one), Some(other)] = pair.map(|at| values.get(at).copied()) else { return };
+            for (at, value) in pair.into_iter().zip([other, one]) {
+                if let Some(place) = values.get_mut(at) {
+                    *place = value;
+                }
+            }
         }
     }
 }

@@ -22,6 +22,7 @@ pub(crate) fn calls(sum: &mut Sum) {
     }
 }
 
+#[inline(never)]
 fn along(sum: &mut Sum, t: Parameter) {
     curve(sum, &hide(&data::CUBIC).net(), t);
     tensor(sum, &hide(&data::UNEVEN).net(), t);
@@ -33,6 +34,7 @@ fn along(sum: &mut Sum, t: Parameter) {
     sum.add(RationalTensorNet::partials(&net, t, t));
 }
 
+#[inline(never)]
 fn curve<C: Coord>(sum: &mut Sum, net: &CurveNet<'_, C>, t: Parameter) {
     sum.add(CurveNet::eval(net, t));
     sum.add(CurveNet::derivative(net, t));
@@ -40,6 +42,7 @@ fn curve<C: Coord>(sum: &mut Sum, net: &CurveNet<'_, C>, t: Parameter) {
     sum.add(CurveNet::blossom(net, hide(&[t])));
 }
 
+#[inline(never)]
 fn tensor<C: Coord>(sum: &mut Sum, net: &TensorNet<'_, C>, t: Parameter) {
     sum.add(TensorNet::eval(net, Parameter::HALF, t));
     sum.add(TensorNet::partials(net, t, t));
@@ -47,6 +50,7 @@ fn tensor<C: Coord>(sum: &mut Sum, net: &TensorNet<'_, C>, t: Parameter) {
     sum.add(TensorNet::blossom(net, &[t], hide(&[t])));
 }
 
+#[inline(never)]
 fn inside(sum: &mut Sum, at: Barycentric) {
     triangle(sum, &hide(&data::TRIANGLE).net(), at);
     let net = hide(&data::WEIGHTED).net();
@@ -54,6 +58,7 @@ fn inside(sum: &mut Sum, at: Barycentric) {
     sum.add(RationalTriangleNet::partials(&net, at));
 }
 
+#[inline(never)]
 fn triangle<C: Coord>(sum: &mut Sum, net: &TriangleNet<'_, C>, at: Barycentric) {
     sum.add(TriangleNet::eval(net, at));
     sum.add(TriangleNet::partials(net, at));

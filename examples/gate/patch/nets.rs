@@ -45,6 +45,7 @@ impl<const M: usize, const H: usize> Digest for RationalTensor<M, H> {
 }
 
 /// A map that fits, and one that leaves every range.
+#[inline(never)]
 fn maps() -> [Affine; 2] {
     let turn = Affine::rotation_z(Angle::from_degrees(hide(31)));
     [turn, Affine { rows: [[hide(I32F32::MAX); 4]; 3] }]
@@ -69,6 +70,7 @@ pub(crate) fn calls(sum: &mut Sum) {
     parameters(sum);
 }
 
+#[inline(never)]
 fn curves(sum: &mut Sum) {
     for x in hide([7, i16::MIN]) {
         sum.add(Curve::from_ints([[0, 0, 0], [x, 55, 1], [100, 100, 3]]));
@@ -93,6 +95,7 @@ fn curves(sum: &mut Sum) {
     eyes().iter().for_each(|eye| sum.add(Curve::perspective(curve, eye)));
 }
 
+#[inline(never)]
 fn triangles(sum: &mut Sum) {
     for x in hide([7, i16::MIN]) {
         sum.add(Triangle::<1, 3>::from_ints([[0, 0, 0], [x, 55, 1], [100, 100, 3]]));
@@ -119,6 +122,7 @@ fn triangles(sum: &mut Sum) {
     eyes().iter().for_each(|eye| sum.add(Triangle::perspective(patch, eye)));
 }
 
+#[inline(never)]
 fn tensors(sum: &mut Sum) {
     for x in hide([7, i16::MIN]) {
         sum.add(Tensor::from_ints([[[0, 0, 0], [x, 55, 1]], [[100, 100, 3], [4, 5, 6]]]));
@@ -145,6 +149,7 @@ fn tensors(sum: &mut Sum) {
     eyes().iter().for_each(|eye| sum.add(Tensor::perspective(patch, eye)));
 }
 
+#[inline(never)]
 fn views(sum: &mut Sum) {
     let points = hide(&[[0, 0, 0], [9, 1, 8], [3, 33, 9], [17, 22, 20], [21, 5, 2], [30, 40, 50]])
         .map(|[x, y, z]| Point3::from_ints(x, y, z));
@@ -164,6 +169,7 @@ fn views(sum: &mut Sum) {
     sum.add(CurveNet::new(&far).map(|net| net.degree()));
 }
 
+#[inline(never)]
 fn rational(sum: &mut Sum) {
     let (curve, triangle, tensor) = hide((&data::CUBIC, &data::TRIANGLE, &data::UNEVEN));
     for weight in hide([1, -3]) {
@@ -192,6 +198,7 @@ fn rational(sum: &mut Sum) {
     }
 }
 
+#[inline(never)]
 fn surfaces(sum: &mut Sum) {
     let nets: [SurfaceNet<'_>; 4] = [
         Surface::surface(hide(&data::TRIANGLE)),
@@ -208,6 +215,7 @@ fn surfaces(sum: &mut Sum) {
     }
 }
 
+#[inline(never)]
 fn parameters(sum: &mut Sum) {
     use embedded_surfaces::patch::{Barycentric, Parameter};
     for (a, b) in hide([(0, 1), (3, 7), (65536, 65536), (1, 65537), (2, 1), (0, 0)]) {

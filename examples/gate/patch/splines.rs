@@ -29,6 +29,7 @@ pub(crate) fn calls(sum: &mut Sum) {
     }
 }
 
+#[inline(never)]
 fn knots(sum: &mut Sum) {
     const CASES: [[i32; 8]; 5] = [
         [0, 0, 0, 1, 3, 4, 4, 4],
@@ -52,6 +53,7 @@ fn knots(sum: &mut Sum) {
     }
 }
 
+#[inline(never)]
 fn curve(sum: &mut Sum, points: &[Point3], weights: &[I16F16], knots: KnotVector<'_, 4>) -> Result<usize, SplineError> {
     let spline = BSplineCurve::new(points, knots)?;
     sum.add((BSplineCurve::points(&spline), BSplineCurve::knots(&spline).points()));
@@ -68,6 +70,7 @@ fn curve(sum: &mut Sum, points: &[Point3], weights: &[I16F16], knots: KnotVector
     Ok(Spline::count(&rational))
 }
 
+#[inline(never)]
 fn surface(
     sum: &mut Sum,
     points: &[Point3],
