@@ -96,13 +96,27 @@ fn lattices(sum: &mut Sum, net: SurfaceNet<'_>, steps: Steps) {
         sum.add(lattice.map(|lattice| (*Lattice::budget(&lattice), Lattice::point_count(&lattice))));
         let Ok(lattice) = lattice else { continue };
         sum.add(Lattice::steps(&lattice));
-        sum.add(Lattice::row_steps(&lattice).map(|steps| steps.size_hint()));
+        sum.add(Lattice::row_steps(&lattice).map(|_| ()));
         if Lattice::point_count(&lattice) < 1000 {
             Lattice::for_each(&lattice, |point| sum.add(point));
-            Lattice::points(&lattice).for_each(|point| sum.add(point));
-            (&lattice).into_iter().step_by(7).for_each(|point| sum.add(point));
-            Lattice::row_steps(&lattice).into_iter().flatten().for_each(|step| sum.add(step));
+            points(sum, &lattice);
+            row_steps(sum, &lattice);
         }
+    }
+}
+
+/// An iterator over points is some kilobytes, so each has a frame of its own.
+#[inline(never)]
+fn points(sum: &mut Sum, lattice: &Lattice<'_>) {
+    for point in Lattice::points(lattice) {
+        sum.add(point);
+    }
+}
+
+#[inline(never)]
+fn row_steps(sum: &mut Sum, lattice: &Lattice<'_>) {
+    for step in Lattice::row_steps(lattice).into_iter().flatten() {
+        sum.add(step);
     }
 }
 
@@ -134,7 +148,9 @@ fn limited(sum: &mut Sum, net: SurfaceNet<'_>, steps: Steps) {
     let lattice = Lattice::new(net, steps);
     sum.add(lattice.map(|lattice| *lattice.budget()));
     if let Ok(lattice) = lattice {
-        lattice.points().take(40).for_each(|point| sum.add(point));
+        for point in (&lattice).into_iter().take(40) {
+            sum.add(point);
+        }
         if steps.r() < 10 {
             lattice.for_each(|point| sum.add(point));
         }
@@ -172,12 +188,20 @@ fn polynomial_curve(sum: &mut Sum, net: CurveNet<'_>) {
 
 #[inline(never)]
 fn walk(sum: &mut Sum, lattice: &CurveLattice<'_>, n: u32) {
-    CurveLattice::points(lattice).take(20).for_each(|point| sum.add(point));
-    let steps = CurveLattice::unit_steps(lattice);
+    for point in CurveLattice::points(lattice).take(20) {
+        sum.add(point);
+    }
     if n < 1000 {
         CurveLattice::for_each(lattice, |point| sum.add(point));
-        lattice.into_iter().for_each(|point| sum.add(point));
     }
+    unit_steps(sum, lattice);
+}
+
+#[inline(never)]
+fn unit_steps(sum: &mut Sum, lattice: &CurveLattice<'_>) {
+    let steps = CurveLattice::unit_steps(lattice);
     sum.add(steps.as_ref().map(|_| ()).map_err(|error| *error));
-    steps.into_iter().flat_map(|steps| steps.take(50)).for_each(|step| sum.add(step));
+    for step in steps.into_iter().flatten().take(50) {
+        sum.add(step);
+    }
 }
