@@ -4,20 +4,17 @@
 //! What is not installed (a target, QEMU) is skipped with a message, or fails where `REQUIRE_FIRMWARE=1`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[path = "common/firmware.rs"]
+#[allow(dead_code)]
+mod firmware;
 #[path = "../examples/fw_smoke.rs"]
 #[allow(dead_code, reason = "its `main` is for `cargo run`")]
 mod fw_smoke;
 
 use embedded_surfaces::geometry::Point3;
-use object::{Object, ObjectSymbol};
-use std::io::{Read, Write};
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
-
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
-/// How long a firmware may run before it is killed; it takes a fraction of a second.
-const WATCHDOG: Duration = Duration::from_secs(30);
+use firmware::{ROOT, cargo_build, offence, run, runner, skip, symbols, target_is_installed};
+use std::path::Path;
+use std::process::Command;
 
 #[test]
 fn thumbv6m() {
@@ -62,118 +59,6 @@ fn check_example(target: &str, example: &str, expected: &str) {
         return skip(target, &runner[0]);
     }
     assert_eq!(run(&runner, &image), expected, "{example} on {target}");
-}
-
-/// Says on the real standard error, which the test harness does not capture, that something is not checked.
-fn skip(target: &str, missing: &str) {
-    let required = std::env::var_os("REQUIRE_FIRMWARE").is_some_and(|value| value == "1");
-    assert!(!required, "{target}: {missing} is missing, and REQUIRE_FIRMWARE=1");
-    let message = format!("firmware test of {target} skipped: {missing} is missing\n");
-    std::io::stderr().write_all(message.as_bytes()).unwrap();
-}
-
-fn target_is_installed(target: &str) -> bool {
-    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
-    let output = Command::new(rustc).current_dir(ROOT).args(["--print", "target-libdir", "--target", target]).output();
-    output.is_ok_and(|o| o.status.success() && Path::new(String::from_utf8_lossy(&o.stdout).trim()).is_dir())
-}
-
-/// Runs `cargo build --release` in a target directory of its own (the outer cargo may hold the lock of the usual one)
-/// and returns the folder with the results.
-fn cargo_build(target: &str, what: &[&str]) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("firmware");
-    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.current_dir(ROOT).args(["build", "--release", "--locked", "--quiet", "--target", target]);
-    cargo.args(what).arg("--target-dir").arg(&folder);
-    // These would replace the link arguments of .cargo/config.toml.
-    for variable in ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "CARGO_BUILD_RUSTFLAGS", "CARGO_BUILD_TARGET"] {
-        cargo.env_remove(variable);
-    }
-    let output = cargo.output().unwrap();
-    assert!(output.status.success(), "{target} {what:?}:\n{}", String::from_utf8_lossy(&output.stderr));
-    folder.join(target).join("release")
-}
-
-/// The words of `runner = "…"` in `[target.NAME]`: what `cargo run` uses.
-fn runner(config: &str, target: &str) -> Vec<String> {
-    let section =
-        config.split("\n[").find_map(|s| s.trim_start_matches('[').strip_prefix(&format!("target.{target}]")));
-    let line = section.and_then(|s| s.lines().find_map(|line| line.strip_prefix("runner = ")));
-    line.expect("a runner").trim_matches('"').split_whitespace().map(String::from).collect()
-}
-
-/// What the firmware prints. Fails when it does not end well in time.
-fn run(runner: &[String], image: &Path) -> String {
-    let mut qemu = Command::new(&runner[0]);
-    qemu.args(&runner[1..]).arg(image).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = qemu.spawn().unwrap();
-    let (out, err) = (gather(child.stdout.take().unwrap()), gather(child.stderr.take().unwrap()));
-    let start = Instant::now();
-    let status = loop {
-        match child.try_wait().unwrap() {
-            None if start.elapsed() > WATCHDOG => {
-                child.kill().unwrap();
-                break child.wait().unwrap();
-            }
-            None => std::thread::sleep(Duration::from_millis(10)),
-            Some(status) => break status,
-        }
-    };
-    let (out, err) = (out.join().unwrap(), err.join().unwrap());
-    assert!(status.success(), "{status}; printed {out:?}, QEMU says {err}");
-    out
-}
-
-fn gather(mut pipe: impl Read + Send + 'static) -> std::thread::JoinHandle<String> {
-    std::thread::spawn(move || {
-        let mut bytes = Vec::new();
-        pipe.read_to_end(&mut bytes).unwrap();
-        String::from_utf8_lossy(&bytes).into_owned()
-    })
-}
-
-/// The names in the symbol table of an ELF file.
-fn symbols(elf: &[u8]) -> Vec<String> {
-    let file = object::File::parse(elf).unwrap();
-    file.symbols().filter_map(|symbol| symbol.name().ok().map(String::from)).collect()
-}
-
-/// Why a symbol may not be in a firmware; `None` for one that may. The panic handler alone is no offence: it is
-/// required, and only `core::panicking` calls it.
-fn offence(name: &str) -> Option<&'static str> {
-    const ALLOCATOR: [&str; 5] = ["__rust_alloc", "__rust_dealloc", "__rust_realloc", "__rg_", "__rdl_"];
-    const C_ALLOCATOR: [&str; 4] = ["malloc", "calloc", "realloc", "free"];
-    if name.contains("panicking") {
-        Some("a panic")
-    } else if is_soft_float(name) {
-        Some("soft float")
-    } else if ALLOCATOR.iter().any(|part| name.contains(part)) || C_ALLOCATOR.contains(&name) {
-        Some("an allocator")
-    } else {
-        None
-    }
-}
-
-/// The run-time ABI of ARM (`__aeabi_dadd`, `__aeabi_ui2f`, …) or of GCC (`__adddf3`, `__floatunsisf`, …).
-fn is_soft_float(name: &str) -> bool {
-    const OPERATIONS: [&str; 19] = [
-        "add", "sub", "mul", "div", "neg", "eq", "ne", "lt", "le", "gt", "ge", "cmp", "unord", "powi", "fix", "fixuns",
-        "float", "floatun", "extend",
-    ];
-    if let Some(arm) = name.strip_prefix("__aeabi_") {
-        return arm.starts_with(['f', 'd'])
-            || ["cf", "cd"].iter().any(|c| arm.starts_with(c))
-            || arm.contains("2f")
-            || arm.contains("2d");
-    }
-    // Modes are pairs of letters: half, single, double, tetra; float or integer.
-    let is_mode = |pair: &[u8]| matches!(pair, [b'h' | b's' | b'd' | b't', b'f' | b'i']);
-    let modes = |rest: &str| {
-        let rest = rest.trim_end_matches(|c: char| c.is_ascii_digit());
-        !rest.is_empty() && rest.contains('f') && rest.len() % 2 == 0 && rest.as_bytes().chunks(2).all(is_mode)
-    };
-    let gcc = name.strip_prefix("__").unwrap_or("");
-    OPERATIONS.iter().chain(&["trunc"]).any(|operation| gcc.strip_prefix(operation).is_some_and(modes))
 }
 
 /// floor(S + 1/2) of the patch's lattice by direct Bernstein sums: [i, j, x, y, z] in row order.

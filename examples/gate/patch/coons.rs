@@ -1,6 +1,6 @@
 //! Coons patches.
 
-use crate::gate::{Sum, hide};
+use super::super::{Sum, hide};
 use embedded_surfaces::patch::{CoonsBoundary, CubicCurve};
 
 pub(crate) fn calls(sum: &mut Sum) {

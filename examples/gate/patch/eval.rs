@@ -1,6 +1,6 @@
 //! Points, blossoms and derivatives.
 
-use crate::gate::{Sum, data, hide};
+use super::super::{Sum, data, hide};
 use embedded_surfaces::num::Coord;
 use embedded_surfaces::patch::{
     Barycentric, CurveNet, Parameter, RationalCurveNet, RationalTensorNet, RationalTriangleNet, TensorNet, TriangleNet,

@@ -1,6 +1,6 @@
 //! Hermite curves and patches.
 
-use crate::gate::{Sum, hide};
+use super::super::{Sum, hide};
 use embedded_surfaces::geometry::{Point3, Vector3};
 use embedded_surfaces::num::I32F32;
 use embedded_surfaces::patch::{BicubicPatch, CubicCurve, HermiteCorner};

@@ -1,6 +1,6 @@
 //! Construction, views, maps and conversions of nets, polynomial and rational.
 
-use crate::gate::{Digest, Sum, data, hide};
+use super::super::{Digest, Sum, data, hide};
 use embedded_surfaces::geometry::{Affine, Perspective, Point3};
 use embedded_surfaces::num::{Angle, Coord, I16F16, I32F32};
 use embedded_surfaces::patch::{
@@ -163,8 +163,8 @@ fn views(sum: &mut Sum) {
             ((m, h), net.points())
         }));
     }
-    sum.add(TriangleNet::new(hide(usize::MAX), narrow).map(|net| net.degree()));
-    sum.add(TensorNet::new(hide((usize::MAX, 9)), narrow).map(|net| net.degrees()));
+    sum.add(TriangleNet::new(hide(0xffff_ffff), narrow).map(|net| net.degree()));
+    sum.add(TensorNet::new(hide((0xffff_ffff, 9)), narrow).map(|net| net.degrees()));
     let far = [Point3::from_ints(0, hide(i16::MIN), 0); 2];
     sum.add(CurveNet::new(&far).map(|net| net.degree()));
 }

@@ -1,6 +1,6 @@
 //! Sphere, cylinder, cone and torus.
 
-use crate::gate::{Sum, hide};
+use super::super::{Sum, hide};
 use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::num::I16F16;
 use embedded_surfaces::patch::{Dimension, cone, cylinder, sphere, torus};

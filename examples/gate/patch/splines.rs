@@ -1,6 +1,6 @@
 //! Knots and splines; their pieces, by number and in turn.
 
-use crate::gate::{Sum, data, hide};
+use super::super::{Sum, data, hide};
 use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::num::I16F16;
 use embedded_surfaces::patch::{
