@@ -109,8 +109,19 @@ fn generate(net: SurfaceNet<'_>, steps: u32, total: &mut Total) {
     *total = Total { points: lattice.point_count() as u32, sum };
 }
 
+/// A row whose count is known: an instruction a point.
+#[inline(never)]
+fn nops() {
+    #[cfg(target_os = "none")]
+    // SAFETY: does nothing.
+    unsafe {
+        core::arch::asm!(".rept 1000", "nop", ".endr", options(nomem, nostack, preserves_flags));
+    }
+}
+
 /// Writes a line per row.
 pub(crate) fn report(out: &mut impl core::fmt::Write) -> core::fmt::Result {
+    writeln!(out, "nops: {} instructions, 1000 points, sum 0", counter::count(nops))?;
     for (name, net, steps) in rows() {
         let (net, steps) = black_box((net, steps));
         let mut total = Total::default();

@@ -57,6 +57,8 @@ fn instructions_are_as_budgeted() {
             assert_eq!((&there.name, there.points, there.sum), (&here.name, here.points, here.sum), "{target}");
         }
         assert_eq!(rows.len(), host.len());
+        // A call and a return, and what the counter is off.
+        assert!((1000..=1006).contains(&rows[0].instructions), "{target}: the counter says {:?}", rows[0]);
         let measured: Vec<_> =
             rows.iter().map(|row| (format!("instructions, {}", row.name), row.instructions)).collect();
         budgets::check(&format!("fw_bench, {target}"), &measured);
