@@ -34,6 +34,12 @@ mod target {
         leave(false)
     }
 
+    /// A stack that overflows ends here, if there is room for that: QEMU stops instead of waiting for the watchdog.
+    #[cortex_m_rt::exception]
+    unsafe fn HardFault(_: &cortex_m_rt::ExceptionFrame) -> ! {
+        leave(false)
+    }
+
     fn leave(done: bool) -> ! {
         debug::exit(if done { debug::EXIT_SUCCESS } else { debug::EXIT_FAILURE });
         loop {

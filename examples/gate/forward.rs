@@ -96,13 +96,25 @@ fn lattices(sum: &mut Sum, net: SurfaceNet<'_>, steps: Steps) {
         sum.add(lattice.map(|lattice| (*Lattice::budget(&lattice), Lattice::point_count(&lattice))));
         let Ok(lattice) = lattice else { continue };
         sum.add(Lattice::steps(&lattice));
-        sum.add(Lattice::row_steps(&lattice).map(|_| ()));
+        refusal(sum, &lattice);
         if Lattice::point_count(&lattice) < 1000 {
-            Lattice::for_each(&lattice, |point| sum.add(point));
+            each(sum, &lattice);
             points(sum, &lattice);
             row_steps(sum, &lattice);
         }
     }
+}
+
+#[inline(never)]
+fn first(sum: &mut Sum, lattice: &Lattice<'_>) {
+    for point in lattice.into_iter().take(40) {
+        sum.add(point);
+    }
+}
+
+#[inline(never)]
+fn each(sum: &mut Sum, lattice: &Lattice<'_>) {
+    Lattice::for_each(lattice, |point| sum.add(point));
 }
 
 /// An iterator over points is some kilobytes, so each has a frame of its own.
@@ -114,9 +126,16 @@ fn points(sum: &mut Sum, lattice: &Lattice<'_>) {
 }
 
 #[inline(never)]
+fn refusal(sum: &mut Sum, lattice: &Lattice<'_>) {
+    sum.add(Lattice::row_steps(lattice).map(|_| ()));
+}
+
+#[inline(never)]
 fn row_steps(sum: &mut Sum, lattice: &Lattice<'_>) {
-    for step in Lattice::row_steps(lattice).into_iter().flatten() {
-        sum.add(step);
+    if let Ok(steps) = Lattice::row_steps(lattice) {
+        for step in steps {
+            sum.add(step);
+        }
     }
 }
 
@@ -148,11 +167,9 @@ fn limited(sum: &mut Sum, net: SurfaceNet<'_>, steps: Steps) {
     let lattice = Lattice::new(net, steps);
     sum.add(lattice.map(|lattice| *lattice.budget()));
     if let Ok(lattice) = lattice {
-        for point in (&lattice).into_iter().take(40) {
-            sum.add(point);
-        }
+        first(sum, &lattice);
         if steps.r() < 10 {
-            lattice.for_each(|point| sum.add(point));
+            each(sum, &lattice);
         }
     }
 }
@@ -188,20 +205,32 @@ fn polynomial_curve(sum: &mut Sum, net: CurveNet<'_>) {
 
 #[inline(never)]
 fn walk(sum: &mut Sum, lattice: &CurveLattice<'_>, n: u32) {
+    curve_points(sum, lattice);
+    if n < 1000 {
+        each_of_curve(sum, lattice);
+    }
+    unit_steps(sum, lattice);
+}
+
+#[inline(never)]
+fn curve_points(sum: &mut Sum, lattice: &CurveLattice<'_>) {
     for point in CurveLattice::points(lattice).take(20) {
         sum.add(point);
     }
-    if n < 1000 {
-        CurveLattice::for_each(lattice, |point| sum.add(point));
-    }
-    unit_steps(sum, lattice);
+}
+
+#[inline(never)]
+fn each_of_curve(sum: &mut Sum, lattice: &CurveLattice<'_>) {
+    CurveLattice::for_each(lattice, |point| sum.add(point));
 }
 
 #[inline(never)]
 fn unit_steps(sum: &mut Sum, lattice: &CurveLattice<'_>) {
     let steps = CurveLattice::unit_steps(lattice);
     sum.add(steps.as_ref().map(|_| ()).map_err(|error| *error));
-    for step in steps.into_iter().flatten().take(50) {
-        sum.add(step);
+    if let Ok(steps) = steps {
+        for step in steps.take(50) {
+            sum.add(step);
+        }
     }
 }
