@@ -69,5 +69,5 @@ fn views(sum: &mut Sum, points: &[Point3; 4]) {
         let behind = Point3::from_ints(0, 0, hide(-500));
         points.iter().chain([&behind]).for_each(|p| sum.add(Perspective::project(&eye, p)));
     }
-    Axis::ALL.map(|axis| sum.add(Err::<(), _>(axis)));
+    Axis::ALL.into_iter().for_each(|axis| sum.add(Err::<(), _>(axis)));
 }

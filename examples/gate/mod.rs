@@ -21,8 +21,11 @@ use core::fmt::{Display, Write};
 use embedded_surfaces::geometry::{Affine, Bounds, Point3, Vector3};
 use embedded_surfaces::num::{Coord, I16F16, I32F32};
 
-/// The modules with their calls.
-pub(crate) const MODULES: &[(&str, fn(&mut Sum))] = &[
+/// The name of a module and its calls.
+pub(crate) type Module = (&'static str, fn(&mut Sum));
+
+/// The modules in order.
+pub(crate) const MODULES: &[Module] = &[
     ("num", num::calls),
     ("geometry", geometry::calls),
     ("patch, nets", patch::nets::calls),

@@ -55,7 +55,7 @@ pub(super) fn calls(sum: &mut Sum) {
         }
         sum.add(Scene::new(hide(&[*wave]), Light::default(), style).map(|scene| Scene::area(&scene)));
     }
-    hide(errors()).map(|error| sum.add(Err::<(), _>(error)));
+    hide(errors()).into_iter().for_each(|error| sum.add(Err::<(), _>(error)));
 }
 
 #[inline(never)]
@@ -112,5 +112,6 @@ fn frame(sum: &mut Sum, scene: Scene<'_, SurfaceNet<'_>>, (colour, depth): (&mut
     }
     let grey = |at: Fragment| at.shade;
     hide([Fragment { x: 1, y: 2, patch: 3, shade: 4 }])
-        .map(|at| sum.add((Paint::pixel(&grey, at), Paint::pixel(&Marked, at))));
+        .into_iter()
+        .for_each(|at| sum.add((Paint::pixel(&grey, at), Paint::pixel(&Marked, at))));
 }

@@ -51,7 +51,7 @@ pub(crate) fn compare(budget: &[(String, u64)], measured: &[(String, u64)]) -> V
         let (before, now) = (budget.get(*name), measured.get(*name));
         (before != now).then(|| format!("{name}: {} budgeted, {} measured", show(before), show(now)))
     };
-    names.iter().filter_map(|name| line(name)).collect()
+    names.iter().filter_map(line).collect()
 }
 
 pub(crate) fn parse(text: &str) -> BTreeMap<String, Section> {

@@ -14,5 +14,7 @@ pub(crate) fn calls(sum: &mut Sum) {
         sum.add(cone(centre, radius, other));
         sum.add(torus(centre, radius, other));
     }
-    hide([Dimension::Radius, Dimension::TubeRadius, Dimension::Height]).map(|d| sum.add(Err::<(), _>(d)));
+    hide([Dimension::Radius, Dimension::TubeRadius, Dimension::Height])
+        .into_iter()
+        .for_each(|d| sum.add(Err::<(), _>(d)));
 }

@@ -57,7 +57,7 @@ fn knots(sum: &mut Sum) {
 fn curve(sum: &mut Sum, points: &[Point3], weights: &[I16F16], knots: KnotVector<'_, 4>) -> Result<usize, SplineError> {
     let spline = BSplineCurve::new(points, knots)?;
     sum.add((BSplineCurve::points(&spline), BSplineCurve::knots(&spline).points()));
-    hide([0, 2, 99]).map(|index| sum.add(BSplineCurve::piece(&spline, index)));
+    hide([0, 2, 99]).into_iter().for_each(|index| sum.add(BSplineCurve::piece(&spline, index)));
     BSplineCurve::pieces(&spline).for_each(|piece| sum.add(piece));
     let rational = NurbsCurve::new(spline, weights)?;
     sum.add((NurbsCurve::weights(&rational), NurbsCurve::spline(&rational).points()));
@@ -81,7 +81,7 @@ fn surface(
     let spline = BSplineSurface::new(points, along_r, along_s)?;
     let (r, s) = BSplineSurface::knots(&spline);
     sum.add((BSplineSurface::points(&spline), (r.pieces(), s.pieces())));
-    hide([(0, 0), (2, 0), (0, 1)]).map(|(i, j)| sum.add(BSplineSurface::piece(&spline, i, j)));
+    hide([(0, 0), (2, 0), (0, 1)]).into_iter().for_each(|(i, j)| sum.add(BSplineSurface::piece(&spline, i, j)));
     BSplineSurface::pieces(&spline).for_each(|piece| sum.add(piece));
     let rational = NurbsSurface::new(spline, weights)?;
     sum.add((NurbsSurface::weights(&rational), NurbsSurface::spline(&rational).points()));
