@@ -11,12 +11,16 @@ mod draw;
 mod seed;
 #[path = "data/teapot.rs"]
 mod teapot;
+#[path = "data/turning.rs"]
+#[allow(dead_code, reason = "its parts for tests")]
+mod turning;
 
 use clap::Parser;
 use embedded_graphics::Drawable;
-use embedded_graphics::pixelcolor::{BinaryColor, Gray2, PixelColor, Rgb888};
+use embedded_graphics::draw_target::DrawTargetExt;
+use embedded_graphics::pixelcolor::{BinaryColor, Gray2, Gray4, PixelColor, Rgb888};
 use embedded_graphics::prelude::{GrayColor, RgbColor};
-use embedded_graphics_simulator::{OutputSettings, SimulatorDisplay};
+use embedded_graphics_simulator::{OutputSettings, OutputSettingsBuilder, SimulatorDisplay};
 use embedded_surfaces::geometry::{Affine, Perspective, View};
 use embedded_surfaces::graphics::{BezierCurve, Material, Ramps, Shade, Stroke};
 use embedded_surfaces::num::{Angle, I16F16, I32F32};
@@ -50,6 +54,7 @@ fn main() -> Outcome {
     single(&folder, "teapot_1_bit", &pot, &Material { colour: BinaryColor::On }, BinaryColor::Off)?;
     single(&folder, "teapot_4_greys", &pot, &Material { colour: Gray2::WHITE }, Gray2::BLACK)?;
     perspective(&folder)?;
+    oled(&folder)?;
     seed_patches(&folder)?;
     styles(&folder)?;
     shapes(&folder)?;
@@ -101,6 +106,21 @@ fn perspective(folder: &Path) -> Outcome {
     let scene = Scene::new(&seen, Light::default(), Style::Glossy(Gloss::new(150, 28)))?;
     draw::in_bands(&mut display, scene, (&Ramps { ramps: &[&glaze] }, BACKGROUND), (SCREEN, 16), |_| ())?;
     save(folder, "perspective", &display)
+}
+
+/// Three frames of `fw_oled`, each pixel twice as wide and as high.
+fn oled(folder: &Path) -> Outcome {
+    let (screen, gap) = (turning::AREA, 4);
+    let mut display = draw::blank(Area { width: 3 * screen.width + 2 * gap, ..screen }, Gray4::new(4));
+    for (k, frame) in (0..3).zip([3, 17, 30]) {
+        let panel = Area { x: k * (screen.width + gap) as i32, ..screen };
+        turning::draw(frame, &mut turning::Buffers::new(), &mut display.cropped(&panel.into()))
+            .map_err(|fault| format!("{fault:?}"))?;
+    }
+    let path = folder.join("oled.png");
+    display.to_rgb_output_image(&OutputSettingsBuilder::new().scale(2).build()).save_png(&path)?;
+    println!("{}", path.display());
+    Ok(())
 }
 
 /// The two patches of the point-by-point paper, along z and along x.

@@ -16,7 +16,8 @@ use embedded_surfaces::graphics::Material;
 use embedded_surfaces::num::{Angle, I16F16};
 use embedded_surfaces::patch::{BicubicPatch, Surface};
 use embedded_surfaces::reference::{Audit, fixed_half_up};
-use embedded_surfaces::render::{Area, Gloss, Light, Lines, Scene, Style};
+use embedded_surfaces::render::{Area, Cull, Facet, Fill, Gloss, Light, Lines, Scene, Style};
+use embedded_surfaces::subdivide::{PatchTopology, topology};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::error::Error;
 use std::path::PathBuf;
@@ -42,9 +43,24 @@ struct Arguments {
     /// How the patches are drawn
     #[arg(long, value_enum, default_value_t = Look::Shaded)]
     style: Look,
+    /// How they are filled: by exact points, or by facets between the points of a coarse grid
+    #[arg(long, value_enum, default_value_t = Filling::Exact)]
+    fill: Filling,
+    /// How far the surface may be from the facets of a grid, in pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 1.0)]
+    tolerance: f64,
+    /// Leave out what faces away from the viewer
+    #[arg(long)]
+    cull: bool,
     /// Where the picture goes
     #[arg(short, long, default_value = "teapot.png")]
     output: PathBuf,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Filling {
+    Exact,
+    Grid,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -115,23 +131,51 @@ fn run<S: Surface>(arguments: &Arguments, patches: &[S]) -> Result<(), Box<dyn E
     let (width, height) = size(&arguments.size)?;
     let area = Area { x: 0, y: 0, width, height };
     let mut display = draw::blank(area, BACKGROUND);
-    let scene = Scene::new(patches, Light::default(), arguments.style.into())?;
+    let mut edges = vec![PatchTopology::default(); patches.len()];
+    topology(patches, &mut edges)?;
+    let fill = match arguments.fill {
+        Filling::Exact => Fill::Exact,
+        Filling::Grid => {
+            let tolerance = fixed_half_up(arguments.tolerance).filter(|t| *t > 0);
+            Fill::Grid {
+                tolerance: tolerance.ok_or_else(|| format!("--tolerance {}: not positive", arguments.tolerance))?,
+            }
+        }
+    };
+    let scene =
+        Scene::new(patches, Light::default(), arguments.style.into())?.with_topology(&edges)?.with_fill(fill)?;
+    let scene = scene.with_cull(if arguments.cull { Cull::Back } else { Cull::None });
     let progress = bar(u64::from(height), "rows drawn");
     let paint = (&Material { colour: COLOUR }, BACKGROUND);
     let statistics =
         draw::in_bands(&mut display, scene, paint, (area, arguments.band), |rows| progress.inc(rows.into()))?;
     progress.finish_and_clear();
-    let points = statistics.points;
     display.to_rgb_output_image(&OutputSettings::default()).save_png(&arguments.output)?;
 
-    let (progress, mut audit) = (bar(patches.len() as u64, "patches checked"), Audit::default());
-    for index in 0..patches.len() {
-        audit.add(patches, index, area)?;
-        progress.inc(1);
-    }
-    progress.finish_and_clear();
     println!("{}: {width} x {height}, bands of {} rows", arguments.output.display(), arguments.band);
     println!("  patches            {}", patches.len());
+    if arguments.fill == Filling::Grid {
+        println!("  vertices           {} of grids, made once", statistics.vertices);
+        println!(
+            "  facets             {}, {} bytes",
+            statistics.facets,
+            statistics.facets as usize * size_of::<Facet>()
+        );
+        return Ok(());
+    }
+    let points = statistics.points;
+    let audit = if arguments.cull {
+        Audit::of_front(patches, &edges, area)?
+    } else {
+        let (progress, mut audit) = (bar(patches.len() as u64, "patches checked"), Audit::default());
+        for index in 0..patches.len() {
+            audit.add(patches, index, area)?;
+            progress.inc(1);
+        }
+        progress.finish_and_clear();
+        audit
+    };
+    println!("  pieces             {} in all bands, after {} splits", statistics.pieces, statistics.splits);
     println!("  points             {points} in all bands");
     println!("  pixels             {} hit, summed over patches", audit.pixels);
     println!("  points per pixel   {:.2}", points as f64 / audit.pixels as f64);

@@ -32,9 +32,10 @@
 //! 3. [`patch`]: control nets of curves, triangles and tensor products, degrees 1 to 8, polynomial and rational.
 //!    Ways in: Hermite, Coons, B-splines and NURBS, quadrics.
 //! 4. [`forward`]: the point engine. Every lattice point is `floor(S + 1/2)` of the exact surface, by proof.
-//! 5. [`render`]: bands of pixels with depth test, shaded or as lines, the same bytes for every band height.
-//! 6. `graphics`: drawables, strokes of curves, and colours (feature `graphics`, default).
-//! 7. `reference`: the independent `f64` oracle to check scenes against (feature `std`, hosts only).
+//! 5. [`subdivide`]: parts of nets, bounds, how patches meet, watertight meshes.
+//! 6. [`render`]: bands of pixels with depth test, shaded or as lines, the same bytes for every band height.
+//! 7. `graphics`: drawables, strokes of curves, and colours (feature `graphics`, default).
+//! 8. `reference`: the independent `f64` oracle to check scenes against (feature `std`, hosts only).
 //!
 //! # Features
 //! | feature | brings |

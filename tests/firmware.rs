@@ -4,17 +4,17 @@
 //! What is not installed (a target, QEMU) is skipped with a message, or fails where `REQUIRE_FIRMWARE=1`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[path = "common/firmware.rs"]
-#[allow(dead_code)]
-mod firmware;
 #[path = "../examples/fw_smoke.rs"]
 #[allow(dead_code, reason = "its `main` is for `cargo run`")]
 mod fw_smoke;
 
+#[path = "common/firmware.rs"]
+mod firmware;
+
 use embedded_surfaces::geometry::Point3;
-use firmware::{ROOT, cargo_build, offence, run, runner, skip, symbols, target_is_installed};
-use std::path::Path;
-use std::process::Command;
+use firmware::{
+    cargo_build, offence, program_is_installed, run, runner, runner_of, skip, symbols, target_is_installed,
+};
 
 #[test]
 fn thumbv6m() {
@@ -53,9 +53,8 @@ fn check_example(target: &str, example: &str, expected: &str) {
     let offences: Vec<_> = names.iter().filter_map(|name| Some((offence(name)?, name))).collect();
     assert!(offences.is_empty(), "{example} on {target}: {offences:#?}");
 
-    let config = std::fs::read_to_string(Path::new(ROOT).join(".cargo/config.toml")).unwrap();
-    let runner = runner(&config, target);
-    if Command::new(&runner[0]).arg("--version").output().is_err() {
+    let runner = runner_of(target);
+    if !program_is_installed(&runner[0]) {
         return skip(target, &runner[0]);
     }
     assert_eq!(run(&runner, &image), expected, "{example} on {target}");

@@ -237,5 +237,5 @@ fn what_cannot_be_drawn_is_a_typed_error() {
     let large = SurfaceNet::Tensor(TensorNet::new((8, 8), &points).unwrap());
     let error = Scene::new(&[square[0].surface(), large], Light::default(), Style::Flat).map(|_| ()).unwrap_err();
     assert!(matches!(error, RenderError::Patch { index: 1, error: LatticeError::Budget { degrees: (8, 8), .. } }));
-    assert!(error.to_string().starts_with("patch 1: degrees (8, 8) at 241 x 241 steps"), "{error}");
+    assert!(error.to_string().starts_with("patch 1: degrees (8, 8) at "), "{error}");
 }

@@ -4,7 +4,7 @@ use embedded_graphics::pixelcolor::PixelColor;
 use embedded_graphics::prelude::Size;
 use embedded_graphics_simulator::SimulatorDisplay;
 use embedded_surfaces::patch::Surface;
-use embedded_surfaces::render::{Area, Frame, Paint, RenderError, Scene, Statistics};
+use embedded_surfaces::render::{Area, Facet, Frame, Paint, RenderError, Scene, Statistics};
 
 /// A display of `area`'s size, all in one colour.
 pub(crate) fn blank<C: PixelColor>(area: Area, background: C) -> SimulatorDisplay<C> {
@@ -19,7 +19,10 @@ pub(crate) fn in_bands<S: Surface, P: Paint<Pixel = C>, C: PixelColor>(
     (area, rows): (Area, u32),
     mut sent: impl FnMut(u32),
 ) -> Result<Statistics, RenderError> {
-    let mut frame = Frame::new(scene, paint, background, area, rows)?;
+    // A host has room for the longest list.
+    let (mut facets, mut links) =
+        (vec![Facet::EMPTY; u16::MAX.into()], vec![0; u16::MAX as usize + area.height as usize]);
+    let mut frame = Frame::new(scene, paint, background, area, rows)?.with_facets(&mut facets, &mut links)?;
     let (mut colour, mut depth) = (vec![background; frame.band_pixels()], vec![0; frame.band_pixels()]);
     while let Some(band) = frame.next_band(&mut colour, &mut depth)? {
         let Ok(()) = band.draw(display);

@@ -6,11 +6,19 @@
 use embedded_surfaces::geometry::{Affine, GeometryError, Point3};
 use embedded_surfaces::patch::BicubicPatch;
 
+/// A patch in one point.
+pub(crate) const BLANK: BicubicPatch = embedded_surfaces::const_net!(BicubicPatch::from_ints([[[0; 3]; 4]; 4]));
+
 /// The patches as `map` shows them: map the vertices by a [`View`](embedded_surfaces::geometry::View) fitted to
 /// [`vertices`].
 pub(crate) fn patches(map: &Affine) -> Result<[BicubicPatch; 32], GeometryError> {
-    let blank = embedded_surfaces::const_net!(BicubicPatch::from_ints([[[0; 3]; 4]; 4]));
-    let mut out = [blank; 32];
+    let mut out = [BLANK; 32];
+    map_into(map, &mut out)?;
+    Ok(out)
+}
+
+/// The same where they are to be.
+pub(crate) fn map_into(map: &Affine, out: &mut [BicubicPatch; 32]) -> Result<(), GeometryError> {
     for (out, indices) in out.iter_mut().zip(&PATCHES) {
         let mut points = [[Point3::ORIGIN; 4]; 4];
         for (point, index) in points.as_flattened_mut().iter_mut().zip(indices) {
@@ -18,9 +26,9 @@ pub(crate) fn patches(map: &Affine) -> Result<[BicubicPatch; 32], GeometryError>
             *point = map.apply(&Point3::from_ints(x, y, z))?;
         }
         // Mapped points are legal, so the net is.
-        *out = BicubicPatch::new(points).unwrap_or(blank);
+        *out = BicubicPatch::new(points).unwrap_or(BLANK);
     }
-    Ok(out)
+    Ok(())
 }
 
 /// The vertices in model coordinates, 4000 to a unit.

@@ -36,7 +36,9 @@ pub(crate) const MODULES: &[Module] = &[
     ("patch, Coons", patch::coons::calls),
     ("forward", forward::calls),
     ("subdivide", subdivide::calls),
+    ("subdivide, meshes", subdivide::mesh::calls),
     ("render", render::calls),
+    ("render, grid", render::grid::calls),
     #[cfg(feature = "graphics")]
     ("graphics", graphics::calls),
     #[cfg(feature = "styled")]

@@ -10,6 +10,7 @@ mod draw;
 mod field;
 mod lattice;
 mod render;
+mod tessellate;
 mod view;
 
 use clap::{Parser, ValueEnum};
@@ -36,6 +37,8 @@ enum Command {
     Lattice,
     /// A picture of patches, and what it cost
     Render,
+    /// The indexed mesh of patches to a tolerance
+    Tessellate,
 }
 
 /// A result, or a typed error of the geometry as one.
@@ -52,6 +55,7 @@ fn run_one(command: Command, case: &Field<'_>, output: Option<PathBuf>) -> Answe
     let answer = match command {
         Command::Lattice => lattice::run(case)?,
         Command::Render => render::run(case, output)?,
+        Command::Tessellate => tessellate::run(case)?,
     };
     let name = case.get("name").map(|name| ("name".to_owned(), name.value().clone()));
     Ok(name.into_iter().chain(answer).collect())
@@ -85,7 +89,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let result = run(&arguments).and_then(|value| {
         let text = value.to_string();
-        if let (Command::Lattice, Some(path)) = (arguments.command, &arguments.output) {
+        if let (Command::Lattice | Command::Tessellate, Some(path)) = (arguments.command, &arguments.output) {
             std::fs::write(path, &text).map_err(|e| Malformed::new("-o", &format!("{}: {e}", path.display())))?;
         }
         Ok(text)

@@ -12,7 +12,8 @@ use embedded_surfaces::graphics::Material;
 use embedded_surfaces::num::I16F16;
 use embedded_surfaces::patch::SurfaceNet;
 use embedded_surfaces::reference::{Audit, fixed_half_up};
-use embedded_surfaces::render::{Area, Light, Lines, RenderError, Scene, Style};
+use embedded_surfaces::render::{Area, Fill, Light, Lines, RenderError, Scene, Statistics, Style};
+use embedded_surfaces::subdivide::{PatchTopology, SubdivideError, topology};
 use serde_json::Map;
 use std::path::PathBuf;
 
@@ -21,6 +22,7 @@ struct Settings {
     area: Area,
     band: u32,
     style: Style,
+    fill: Fill,
     colour: Rgb888,
     background: Rgb888,
 }
@@ -32,9 +34,17 @@ fn colour(field: Option<Field<'_>>, default: [u8; 3]) -> Result<Rgb888, Malforme
 
 impl Settings {
     fn read(case: &Field<'_>) -> Result<Self, Malformed> {
-        if let Some(fill) = case.get("fill").filter(|f| f.value() != "exact") {
-            return Err(fill.malformed("only \"exact\" is supported"));
-        }
+        let fill = match case.get("fill").filter(|f| f.value() != "exact") {
+            None => Fill::Exact,
+            Some(fill) => {
+                let Some(tolerance) = fill.get("grid") else {
+                    return Err(fill.malformed("neither \"exact\" nor {\"grid\": tolerance}"));
+                };
+                let fixed = fixed_half_up(tolerance.number()?);
+                let out_of_range = || tolerance.malformed("the tolerance does not fit 16 bits before the point");
+                Fill::Grid { tolerance: fixed.ok_or_else(out_of_range)? }
+            }
+        };
         let (width, height) = match case.get("size") {
             None => (320, 240),
             Some(size) => {
@@ -56,6 +66,7 @@ impl Settings {
             area: Area { x: 0, y: 0, width, height },
             band: case.get("band").map_or(Ok(16), |f| f.whole(1..=u32::MAX))?,
             style,
+            fill,
             colour: colour(case.get("color"), [255; 3])?,
             background: colour(case.get("background"), [0; 3])?,
         })
@@ -119,33 +130,53 @@ pub(crate) fn run(case: &Field<'_>, output: Option<PathBuf>) -> Answer {
         nets.push(net.map_err(|error| case.malformed(&error.to_string()))?);
     }
     match picture(&settings, &nets) {
-        Ok((display, points, audit)) => {
+        Ok((display, drawn, audit)) => {
             if let Some(path) = output {
                 let image = display.to_rgb_output_image(&OutputSettings::default());
                 image.save_png(&path).map_err(|e| Malformed::new("-o", &format!("{}: {e}", path.display())))?;
             }
             Ok(Map::from_iter([
                 ("status".to_owned(), "ok".into()),
-                ("points".to_owned(), points.into()),
+                ("points".to_owned(), (drawn.points + drawn.vertices).into()),
                 ("pixels".to_owned(), audit.pixels.into()),
-                ("pieces".to_owned(), nets.len().into()),
-                ("splits".to_owned(), 0.into()),
+                ("pieces".to_owned(), (u64::from(drawn.pieces) + drawn.facets).into()),
+                ("splits".to_owned(), drawn.splits.into()),
                 ("missed".to_owned(), audit.missed.len().into()),
             ]))
         }
-        Err(RenderError::Patch { error, .. }) => Ok(typed_error(&error)),
-        Err(error) => Ok(typed_error(&error)),
+        Err(Refused::Render(RenderError::Patch { error, .. })) => Ok(typed_error(&error)),
+        Err(Refused::Render(error)) => Ok(typed_error(&error)),
+        Err(Refused::Topology(error)) => Ok(typed_error(&error)),
     }
 }
 
-/// The picture, the lattice points that it took, and the audit against the reference.
-fn picture(
-    settings: &Settings,
-    nets: &[SurfaceNet<'_>],
-) -> Result<(SimulatorDisplay<Rgb888>, u64, Audit), RenderError> {
+/// Why there is no picture.
+enum Refused {
+    Render(RenderError),
+    Topology(SubdivideError),
+}
+
+impl From<RenderError> for Refused {
+    fn from(error: RenderError) -> Self {
+        Self::Render(error)
+    }
+}
+
+/// A picture, what drawing it took, and the audit against the reference.
+type Picture = (SimulatorDisplay<Rgb888>, Statistics, Audit);
+
+fn picture(settings: &Settings, nets: &[SurfaceNet<'_>]) -> Result<Picture, Refused> {
     let mut display = draw::blank(settings.area, settings.background);
     let paint = (&Material { colour: settings.colour }, settings.background);
-    let scene = Scene::new(nets, Light::default(), settings.style)?;
+    let mut edges = vec![PatchTopology::default(); nets.len()];
+    let (scene, audit) = match settings.fill {
+        Fill::Grid { tolerance } => {
+            topology(nets, &mut edges).map_err(Refused::Topology)?;
+            let scene = Scene::grid(nets, &edges, tolerance, Light::default(), settings.style)?;
+            (scene, Audit::of_grid(nets, tolerance, settings.area)?)
+        }
+        _ => (Scene::new(nets, Light::default(), settings.style)?, Audit::of(nets, settings.area)?),
+    };
     let statistics = draw::in_bands(&mut display, scene, paint, (settings.area, settings.band), |_| ())?;
-    Ok((display, statistics.points, Audit::of(nets, settings.area)?))
+    Ok((display, statistics, audit))
 }

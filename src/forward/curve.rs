@@ -168,3 +168,28 @@ impl Iterator for UnitSteps {
 }
 
 impl core::iter::FusedIterator for UnitSteps {}
+
+#[cfg(feature = "defmt")]
+mod format {
+    use super::{CurveLattice, CurvePoints, UnitSteps};
+    use defmt::{Format, Formatter};
+
+    impl Format for CurveLattice<'_> {
+        fn format(&self, f: Formatter<'_>) {
+            let (form, budget) = (&self.form, &self.budget);
+            defmt::write!(f, "curve lattice of degree {} at {} steps, {}", form.degrees.0, form.steps.0, budget);
+        }
+    }
+
+    impl Format for CurvePoints {
+        fn format(&self, f: Formatter<'_>) {
+            defmt::write!(f, "{} curve points left", self.0.remaining());
+        }
+    }
+
+    impl Format for UnitSteps {
+        fn format(&self, f: Formatter<'_>) {
+            defmt::write!(f, "{} unit steps left, after {}", self.points.0.remaining(), self.last);
+        }
+    }
+}

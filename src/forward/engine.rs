@@ -33,7 +33,8 @@ macro_rules! with_walker {
         let (form, budget): (&Form<'_>, &Budget) = ($form, $budget);
         macro_rules! run {
             ($name:ident, $room:literal, $kernel:expr) => {{
-                let $walker = Walker::<_, $room>::new($kernel, form, budget);
+                #[allow(unused_mut)]
+                let mut $walker = Walker::<_, $room>::new($kernel, form, budget);
                 #[allow(unused_imports)]
                 use Engine::$name as $variant;
                 $body
@@ -41,7 +42,8 @@ macro_rules! with_walker {
         }
         macro_rules! run_quotient {
             ($name:ident, $word:ty, $room:literal) => {{
-                let $walker = QuotientWalker::<$word, $room>::new(form, budget);
+                #[allow(unused_mut)]
+                let mut $walker = QuotientWalker::<$word, $room>::new(form, budget);
                 #[allow(unused_imports)]
                 use Engine::$name as $variant;
                 $body
@@ -148,9 +150,9 @@ impl Engine {
         each_engine!(self, walker => walker.remaining())
     }
 
-    pub(super) fn fold<B>(self, state: B, f: impl FnMut(B, LatticePoint) -> B) -> B {
+    pub(super) fn fold<B>(mut self, state: B, f: impl FnMut(B, LatticePoint) -> B) -> B {
         let fold = Fold { state, f };
-        each_engine!(self, walker => walker.visit(fold).state)
+        each_engine!(&mut self, walker => walker.visit(fold).state)
     }
 }
 

@@ -30,7 +30,11 @@ impl Estimate {
         for axis in 0..2 {
             let short = |p: &Point3| (if axis == 0 { p.x } else { p.y }).to_bits() >> DROP;
             if let Some(points) = points.first_chunk::<16>().filter(|_| (m, h) == (3, 3)) {
-                estimate.add_bicubic(axis, points.each_ref().map(short));
+                let mut values = [0; 16];
+                for (value, p) in values.iter_mut().zip(points) {
+                    *value = short(p);
+                }
+                estimate.add_bicubic(axis, &values);
                 continue;
             }
             let at = |a: usize, b: usize| points.get(a * (h + 1) + b).map_or(0, short);
@@ -51,25 +55,37 @@ impl Estimate {
     }
 
     /// [`of`](Self::of) for a bicubic.
-    fn add_bicubic(&mut self, axis: usize, v: [i32; 16]) {
+    fn add_bicubic(&mut self, axis: usize, v: &[i32; 16]) {
+        let mut spans = [[[0_u32; 2]; 2]; 2]; // [along][half][of]
         for k in 0..4 {
             let column = [v[k], v[4 + k], v[8 + k], v[12 + k]];
             let row = [v[4 * k], v[4 * k + 1], v[4 * k + 2], v[4 * k + 3]];
-            for (way, [a, b, c, d]) in [(0, column), (1, row)] {
+            for (way, [a, b, c, d]) in [column, row].into_iter().enumerate() {
                 let [u, v, w] = [b - a, c - b, d - c];
-                let middle = (u + 2 * v + w) >> 3;
-                self.raise(axis, (way, way), [[u >> 1, (u + v) >> 2, middle], [w >> 1, (v + w) >> 2, middle]]);
+                let middle = ((u + 2 * v + w) >> 3).unsigned_abs();
+                let ends = [[u >> 1, (u + v) >> 2], [w >> 1, (v + w) >> 2]];
+                for (half, [one, two]) in ends.into_iter().enumerate() {
+                    let most = one.unsigned_abs().max(two.unsigned_abs()).max(middle);
+                    spans[way][half][way] = spans[way][half][way].max(most);
+                }
             }
         }
         for k in 0..3 {
             let across = |at: usize, step: usize| v[(at + step) & 15] - v[at & 15];
             let rows: [i32; 4] = core::array::from_fn(|j| across(4 * k + j, 4));
             let columns: [i32; 4] = core::array::from_fn(|i| across(4 * i + k, 1));
-            for (way, [a, b, c, d]) in [((0, 1), rows), ((1, 0), columns)] {
-                let middle = (a + 3 * (b + c) + d) >> 3;
-                let (first, second) = ([(a + b) >> 1, (a + 2 * b + c) >> 2], [(c + d) >> 1, (b + 2 * c + d) >> 2]);
-                self.raise(axis, way, [[a, first[0], first[1]], [d, second[0], second[1]]]);
-                self.raise(axis, way, [[middle; 3]; 2]);
+            for (of, [a, b, c, d]) in [rows, columns].into_iter().enumerate() {
+                let middle = ((a + 3 * (b + c) + d) >> 3).unsigned_abs();
+                let ends = [[a, (a + b) >> 1, (a + 2 * b + c) >> 2], [d, (c + d) >> 1, (b + 2 * c + d) >> 2]];
+                for (half, ends) in ends.into_iter().enumerate() {
+                    let most = ends.iter().fold(middle, |most, v| v.unsigned_abs().max(most));
+                    spans[1 - of][half][of] = spans[1 - of][half][of].max(most);
+                }
+            }
+        }
+        for (halves, spans) in self.halves.iter_mut().zip(spans) {
+            for (half, spans) in halves.iter_mut().zip(spans) {
+                half[axis & 1] = spans;
             }
         }
     }

@@ -191,3 +191,35 @@ impl Iterator for RowSteps {
 }
 
 impl core::iter::FusedIterator for RowSteps {}
+
+#[cfg(feature = "defmt")]
+mod format {
+    use super::{Lattice, LatticePoints, RowSteps};
+    use defmt::{Format, Formatter};
+
+    impl Format for Lattice<'_> {
+        fn format(&self, f: Formatter<'_>) {
+            let what = if self.form.centred { "centres" } else { "lattice" };
+            defmt::write!(
+                f,
+                "{=str} of degrees {} at {} steps, {}",
+                what,
+                self.form.degrees,
+                self.form.steps,
+                self.budget
+            );
+        }
+    }
+
+    impl Format for LatticePoints {
+        fn format(&self, f: Formatter<'_>) {
+            defmt::write!(f, "{} lattice points left", self.0.remaining());
+        }
+    }
+
+    impl Format for RowSteps {
+        fn format(&self, f: Formatter<'_>) {
+            defmt::write!(f, "{} row steps left, after {}", self.points.0.remaining(), self.last);
+        }
+    }
+}

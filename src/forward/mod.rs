@@ -56,7 +56,7 @@ pub(crate) use budget::MAX_STEPS;
 pub(crate) use estimate::Estimate;
 pub(crate) use form::{Form, Kind};
 pub(crate) use kernel::{Kernel, Residual};
-pub(crate) use piece::{deepest_budget, piece_budget, piece_sampling, piece_turn};
+pub(crate) use piece::{PieceBudget, PieceSlopes, deepest_budget, piece_budget};
 #[cfg(feature = "graphics")]
 pub(crate) use plane::{PlanePlan, PlaneWalk, PlaneWalker};
 pub(crate) use quotient::QuotientWalker;

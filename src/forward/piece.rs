@@ -10,13 +10,16 @@ use crate::geometry::Point3;
 use crate::patch::{MAX_DEGREE, SurfaceNet, triangle_index};
 
 /// The fraction bits that a net keeps at least where its positions are rounded for a narrower accumulator.
-const LEAST_FRACTION: u32 = 8;
+const LEAST_FRACTION: u32 = 7;
 
-/// The bound of a count with 2^-8 + 2^-11 more of itself. A lattice point is within 2^-9 + 2^-13 of the patch: half a
+/// How often z may be halved for a narrower accumulator: it then has at least 4 fraction bits.
+const MOST_HALVINGS: u32 = 3;
+
+/// The bound of a count with 2^-7 + 2^-11 more of itself. A lattice point is within 2^-8 + 2^-13 of the patch: half a
 /// unit of [`LEAST_FRACTION`] bits, and 2^-17 for each of at most 16 roundings at subdivision. So neighbours, also across
-/// a seam, are d = 2^-8 + 2^-12 farther apart than the bound says, and a count has to exceed bound/(1 − d).
+/// a seam, are d = 2^-7 + 2^-12 farther apart than the bound says, and a count has to exceed bound/(1 − d).
 fn with_slack(bound: u32) -> u32 {
-    bound + (bound >> 8) + (bound >> 11)
+    bound + (bound >> 7) + (bound >> 11)
 }
 
 /// Slopes are counted in 2^-9: differences of coordinates cut to 9 fraction bits have at most 25 bits and are less than
@@ -35,13 +38,23 @@ fn short(p: &Point3, axis: usize) -> i32 {
     c.to_bits() >> (16 - SHORT)
 }
 
+/// One coordinate of the points of a bicubic.
+#[inline(always)]
+fn axis_of(points: &[Point3; 16], axis: usize) -> [i32; 16] {
+    let mut values = [0; 16];
+    for (value, p) in values.iter_mut().zip(points) {
+        *value = short(p, axis);
+    }
+    values
+}
+
 /// The largest |difference| of neighbours times the degree, rounded up, for each family of net edges.
 fn slopes(net: &SurfaceNet<'_>, axis: usize) -> Slopes {
     let (points, (m, h)) = (net.points(), net.degrees());
     let gap = |a: &Point3, b: &Point3| short(a, axis).abs_diff(short(b, axis)) + 1;
     let mut largest = [0; 3];
     if let Some(points) = points.first_chunk::<16>().filter(|_| (m, h) == (3, 3) && !net.is_triangle()) {
-        let values = points.each_ref().map(|p| short(p, axis));
+        let values = axis_of(points, axis);
         let along_r = values.iter().zip(&values[4..]).fold(0, |most: u32, (a, b)| a.abs_diff(*b).max(most));
         let rows = values.as_chunks::<4>().0.iter();
         let along_s =
@@ -80,26 +93,64 @@ fn more_than(bound: u32) -> u32 {
     (bound >> SHORT) + 1
 }
 
-/// The cheapest hole-free sampling of a piece, with the slack that seams between pieces need; `centres`: those of cells
-/// may be used.
-pub(crate) fn piece_sampling(net: SurfaceNet<'_>, centres: bool) -> Sampling {
-    if net.weights().is_some() {
-        let plain = || Sampling { steps: Steps::hole_free(net), centres };
-        let Sampling { steps, centres } = if centres { Sampling::cheapest(net) } else { plain() };
-        let more = |n: u32| (with_slack(n) + 1).min(MAX_STEPS + 1);
-        return Sampling { steps: Steps { r: more(steps.r), s: more(steps.s) }, centres };
+/// The bounds on the slopes of a piece in x and y.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PieceSlopes {
+    x: Slopes,
+    y: Slopes,
+}
+
+impl PieceSlopes {
+    pub(crate) fn of(net: SurfaceNet<'_>) -> Self {
+        Self { x: slopes(&net, 0), y: slopes(&net, 1) }
     }
-    let [x, y] = [slopes(&net, 0), slopes(&net, 1)];
-    let [a, b, c] = core::array::from_fn(|d| x[d].max(y[d]));
-    if net.is_triangle() {
-        // The centres of cells make up for the longest family of edges.
-        let longest = a.max(b).max(c);
-        let others = a.max(b).min(b.max(c)).min(a.max(c));
-        let (coarse, fine) = (count(others), count(longest));
-        return cheaper(net, Steps { r: fine, s: fine }, centres.then_some(Steps { r: coarse, s: coarse }));
+
+    /// The larger of x and y, for each family of net edges.
+    fn largest(&self) -> Slopes {
+        core::array::from_fn(|d| self.x[d].max(self.y[d]))
     }
-    let coarse = Steps { r: count(a), s: count(b) };
-    cheaper(net, tensor_steps(net.points(), net.degrees(), a, b), centres.then_some(coarse))
+
+    /// No hole-free lattice of a polynomial tensor-product piece has fewer points.
+    pub(crate) fn least_points(&self) -> u64 {
+        let [a, b, _] = self.largest();
+        u64::from(count(a) + 1) * u64::from(count(b) + 1)
+    }
+
+    /// The cheapest hole-free sampling of the piece, with the slack that seams between pieces need; `centres`: those of
+    /// cells may be used.
+    pub(crate) fn sampling(&self, net: SurfaceNet<'_>, centres: bool) -> Sampling {
+        if net.weights().is_some() {
+            let plain = || Sampling { steps: Steps::hole_free(net), centres };
+            let Sampling { steps, centres } = if centres { Sampling::cheapest(net) } else { plain() };
+            let more = |n: u32| (with_slack(n) + 1).min(MAX_STEPS + 1);
+            return Sampling { steps: Steps { r: more(steps.r), s: more(steps.s) }, centres };
+        }
+        let [a, b, c] = self.largest();
+        if net.is_triangle() {
+            // The centres of cells make up for the longest family of edges.
+            let longest = a.max(b).max(c);
+            let others = a.max(b).min(b.max(c)).min(a.max(c));
+            let (coarse, fine) = (count(others), count(longest));
+            return cheaper(net, Steps { r: fine, s: fine }, centres.then_some(Steps { r: coarse, s: coarse }));
+        }
+        let coarse = Steps { r: count(a), s: count(b) };
+        cheaper(net, tensor_steps(net.points(), net.degrees(), a, b), centres.then_some(coarse))
+    }
+
+    /// The turn of a lattice whose rows change y the least: then bands leave out the most of them. A triangle with centres
+    /// is turned so that they lie on its longest family of edges.
+    pub(crate) fn turn(&self, triangle: bool, centres: bool) -> u8 {
+        let y = self.y;
+        if !triangle {
+            return (y[1] < y[0]).into();
+        }
+        // Turned by 0, 1, 2, rows run along families 0, 1, 2, and cells are halved along families 2, 0, 1.
+        if centres {
+            let [a, b, c] = self.largest();
+            return if c >= a.max(b) { 0 } else { 1 + u8::from(b > a) };
+        }
+        if y[2] < y[0].min(y[1]) { 2 } else { (y[1] < y[0]).into() }
+    }
 }
 
 fn cheaper(net: SurfaceNet<'_>, plain: Steps, coarse: Option<Steps>) -> Sampling {
@@ -135,12 +186,17 @@ fn tensor_steps(points: &[Point3], degrees: (usize, usize), a: u32, b: u32) -> S
     let least = [along_r, along_s].map(|bound| count(bound << shift));
     // In the unit of p and q.
     let scaled = least.map(|n| (n << SHORT) >> shift);
-    let [room_r, room_s] = scaled.map(|n| n - (n >> 8) - (n >> 11) - 1);
+    let [room_r, room_s] = scaled.map(|n| n - (n >> 7) - (n >> 11) - 1);
+    let enough = along_r * along_s;
     let mut diagonals = [Diagonal::default(); 2];
     let pair = |by_r: i32, by_s: i32| {
         let [p, q] = [by_r, by_s].map(|slope| ((slope.unsigned_abs() + MAX_DEGREE as u32) >> shift) + 1);
+        let sum = p * along_s + q * along_r;
+        if sum <= enough {
+            return;
+        }
         let diagonal = &mut diagonals[usize::from((by_r < 0) == (by_s < 0))];
-        diagonal.sum = diagonal.sum.max(p * along_s + q * along_r);
+        diagonal.sum = diagonal.sum.max(sum);
         diagonal.for_s.raise(q, room_r.saturating_sub(p));
         diagonal.for_r.raise(p, room_s.saturating_sub(q));
     };
@@ -149,7 +205,7 @@ fn tensor_steps(points: &[Point3], degrees: (usize, usize), a: u32, b: u32) -> S
         None => each_pair(points, degrees, pair),
     }
     let candidates = diagonals.into_iter().flat_map(|diagonal| {
-        let k = diagonal.sum.max(along_r * along_s);
+        let k = diagonal.sum.max(enough);
         let balanced = |other: u32| count(k.checked_div(other).unwrap_or(0) << shift);
         let beside = |ratio: Ratio, other: u32, least: u32| {
             ratio.times(other).map_or(MAX_STEPS + 1, |bound| more_than(bound << shift).max(least))
@@ -172,12 +228,15 @@ fn each_bicubic_pair(points: &[Point3; 16], mut f: impl FnMut(i32, i32)) {
         [3 * u, u + 2 * v, 2 * v + w, 3 * w]
     };
     for axis in 0..2 {
-        let values = points.each_ref().map(|p| short(p, axis));
-        let by_r: [[i32; 4]; 4] =
-            core::array::from_fn(|j| elevated([values[j], values[4 + j], values[8 + j], values[12 + j]]));
-        for (i, row) in values.as_chunks::<4>().0.iter().enumerate() {
-            for (column, by_s) in by_r.iter().zip(elevated(*row)) {
-                f(column[i & 3], by_s);
+        let values = axis_of(points, axis);
+        let mut by_s = [[0; 4]; 4];
+        for (by_s, row) in by_s.iter_mut().zip(values.as_chunks::<4>().0) {
+            *by_s = elevated(*row);
+        }
+        for j in 0..4 {
+            let by_r = elevated([values[j], values[4 + j], values[8 + j], values[12 + j]]);
+            for i in 0..4 {
+                f(by_r[i], by_s[i][j]);
             }
         }
     }
@@ -236,21 +295,6 @@ impl Ratio {
     }
 }
 
-/// The turn of a piece's lattice whose rows change y the least: then bands leave out the most of them. A triangle with
-/// centres is turned so that they lie on its longest family of edges.
-pub(crate) fn piece_turn(net: &SurfaceNet<'_>, sampling: Sampling) -> u8 {
-    let [x, y] = [slopes(net, 0), slopes(net, 1)];
-    if !net.is_triangle() {
-        return (y[1] < y[0]).into();
-    }
-    // Turned by 0, 1, 2, rows run along families 0, 1, 2, and cells are halved along families 2, 0, 1.
-    if sampling.centres {
-        let [a, b, c] = core::array::from_fn(|d| x[d].max(y[d]));
-        return if c >= a.max(b) { 0 } else { 1 + u8::from(b > a) };
-    }
-    if y[2] < y[0].min(y[1]) { 2 } else { (y[1] < y[0]).into() }
-}
-
 /// K: the longest step of any coordinate in whole units, rounded up, at least 1. Steps of x and y are below 1.
 fn longest_step(net: &SurfaceNet<'_>, (r, s): (u32, u32)) -> u32 {
     let units = |slope: u32, steps: u32| (slope >> SHORT).checked_div(steps).unwrap_or(slope >> SHORT) + 1;
@@ -258,16 +302,29 @@ fn longest_step(net: &SurfaceNet<'_>, (r, s): (u32, u32)) -> u32 {
     units(a, r).max(units(b, s)).min(1 << 16)
 }
 
-/// The budget of a polynomial piece: 32 bits where the net, rounded to at least [`LEAST_FRACTION`] bits, fits and the
-/// degree is at most 3; then 64, then 128. [`Budget::fraction_bits`] tells what to round to.
+/// The budget of a lattice of a piece, and how often z has to be halved for it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PieceBudget {
+    pub(crate) budget: Budget,
+    pub(crate) halvings: u32,
+}
+
+/// The budget of a piece. Polynomial: 32 bits where the net, rounded to at least [`LEAST_FRACTION`] bits, fits and the
+/// degree is at most 3; then 64, then 128. [`Budget::fraction_bits`] tells what to round to. z counts in steps of 2, 4 or
+/// 8 units where it moves faster than x and y.
 ///
 /// # Errors
 /// [`LatticeError::Budget`] where 128 bits are too few.
-pub(crate) fn piece_budget(net: SurfaceNet<'_>, form: &Form<'_>) -> Result<Budget, LatticeError> {
+pub(crate) fn piece_budget(net: SurfaceNet<'_>, form: &Form<'_>) -> Result<PieceBudget, LatticeError> {
     if form.weights().is_some() {
-        return Budget::of(form);
+        return Ok(PieceBudget { budget: Budget::of(form)?, halvings: 0 });
     }
-    budget(form, longest_step(&net, form.steps), 16 - unused_bits(form))
+    let longest = longest_step(&net, form.steps);
+    let halvings = (longest - 1).checked_ilog2().map_or(0, |bits| bits + 1).min(MOST_HALVINGS);
+    let longest = (longest >> halvings) + u32::from(longest & ((1 << halvings) - 1) != 0);
+    // Halved coordinates use more bits.
+    let used = 16 - unused_bits(form).saturating_sub(halvings);
+    Ok(PieceBudget { budget: budget(form, longest, used)?, halvings })
 }
 
 /// Checks that a polynomial patch of this sampling can be split into pieces that have a budget, quartering it `depth`

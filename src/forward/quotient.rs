@@ -66,10 +66,35 @@ impl<W: Word, const R: usize> Site for At<'_, W, R> {
         ]
     }
 
+    /// With S_r = 0 or S_s = 0, S_rs is proportional to T·D_rs + T_s·D_r − T_r·D_s − T_rs·D; factors of 29 bits.
+    fn twist(&self) -> [i64; 3] {
+        let (row, weights) = (self.row, self.weights);
+        let along = |d: &[W; R]| weights.along_row(d);
+        let d = [row.d[0], along(&row.d), row.across_d[0], along(&row.across_d)];
+        let t: [[W; 4]; 3] = core::array::from_fn(|axis| {
+            let (t, across) = (&row.t[axis], &row.across_t[axis]);
+            [t[0], along(t), across[0], along(across)]
+        });
+        let (by_d, by_t) = (excess(&d) + 1, excess(t.as_flattened()) + 1);
+        let [d, d_r, d_s, d_rs] = d.map(|d| to_i64(d >> by_d));
+        t.map(|t| {
+            let [t, t_r, t_s, t_rs] = t.map(|t| to_i64(t >> by_t));
+            t * d_rs + t_s * d_r - t_r * d_s - t_rs * d
+        })
+    }
+
     fn below(&self, axis: usize, fraction: &Fraction) -> u32 {
         // value + 1/2 = x + (D/2 − T)/D.
         let d = self.row.d[0];
         fraction.divide((d >> 1).wrapping_minus(self.row.t[axis][0]), d)
+    }
+
+    fn floor(&self, axis: usize, fraction: &Fraction) -> i32 {
+        // value = x − T/D with T in (−D/2, D/2].
+        let (d, t) = (self.row.d[0], self.row.t[axis][0]);
+        let below = t > W::ZERO;
+        let e = if below { d.wrapping_minus(t) } else { W::ZERO.wrapping_minus(t) };
+        ((self.row.x[axis] - i32::from(below)) << fraction.bits) + fraction.divide(e, d) as i32
     }
 }
 
@@ -147,27 +172,45 @@ pub(crate) struct QuotientWalker<W, const R: usize> {
 impl<W: Word, const R: usize> QuotientWalker<W, R> {
     /// The walk over a form with weights, whose degrees are below `R`.
     pub(crate) fn new(form: &Form<'_>, budget: &Budget) -> Self {
+        let mut walker = Self::blank();
+        walker.set_up(form, budget);
+        walker
+    }
+
+    /// No walk yet: for [`set_up`](Self::set_up) in place, which spares the stack a copy.
+    #[inline(always)]
+    pub(crate) fn blank() -> Self {
+        let zero = [W::ZERO; R];
+        Self {
+            x: [0; 3],
+            t: [[zero; R]; 3],
+            d: [zero; R],
+            row: Row { x: [0; 3], t: [zero; 3], d: zero, across_t: [zero; 3], across_d: zero },
+            weights: Weights::of((0, 0)),
+            ladder: 0,
+            position: (0, 0),
+            last_in_row: 0,
+            last_row: 0,
+            shrinks: false,
+        }
+    }
+
+    /// Starts the walk over a form with weights, whose degrees are below `R`.
+    #[inline(never)]
+    pub(crate) fn set_up(&mut self, form: &Form<'_>, budget: &Budget) {
         let (drop, fraction_bits) = (16 - budget.fraction_bits, budget.fraction_bits);
         let weight = |a, b| form.weight_bits(a, b) >> budget.weight_shift;
-        let d: Table<W, R> = difference_table(form, &|a, b| weight(a, b) << fraction_bits);
-        let zero = [W::ZERO; R];
-        let mut walker = Self {
-            x: [0; 3],
-            t: core::array::from_fn(|axis| {
-                difference_table(form, &|a, b| weight(a, b) * (form.bits(axis, a, b) >> drop))
-            }),
-            d,
-            row: Row { x: [0; 3], t: [zero; 3], d: zero, across_t: [zero; 3], across_d: zero },
-            weights: Weights::of(form.degrees),
-            ladder: budget.largest_step.checked_ilog2().unwrap_or(0),
-            position: (0, 0),
-            last_in_row: form.last_in_row(0),
-            last_row: form.last_row(),
-            shrinks: form.kind == Kind::Triangle,
-        };
-        walker.place(form);
-        walker.start_row::<true>();
-        walker
+        difference_table(&mut self.d, form, &|a, b| weight(a, b) << fraction_bits);
+        for (axis, t) in self.t.iter_mut().enumerate() {
+            difference_table(t, form, &|a, b| weight(a, b) * (form.bits(axis, a, b) >> drop));
+        }
+        self.weights = Weights::of(form.degrees);
+        self.ladder = budget.largest_step.checked_ilog2().unwrap_or(0);
+        self.last_in_row = form.last_in_row(0);
+        self.last_row = form.last_row();
+        self.shrinks = form.kind == Kind::Triangle;
+        self.place(form);
+        self.start_row::<true>();
     }
 
     /// Turns the tables of A into those of T at the first point.
@@ -227,27 +270,34 @@ impl<W: Word, const R: usize> QuotientWalker<W, R> {
 
     /// Visits what is left of the lattice.
     #[inline]
-    pub(crate) fn visit<V: Visit>(mut self, mut visitor: V) -> V {
+    pub(crate) fn visit<V: Visit>(&mut self, mut visitor: V) -> V {
         if self.position.1 > self.last_row {
             return visitor;
         }
         loop {
-            let (mut i, j) = self.position;
-            let mut row = self.row;
-            let wanted = visitor.wants_row(j);
-            while wanted {
-                visitor = visitor.point(&At { i, j, row: &row, weights: &self.weights });
-                if i == self.last_in_row {
-                    break;
-                }
-                i += 1;
-                if V::TANGENTS { row.step::<true>(self.ladder) } else { row.step::<false>(self.ladder) }
+            let j = self.position.1;
+            if visitor.wants_row(j) {
+                visitor = self.visit_row(visitor);
             }
             if j == self.last_row {
                 return visitor;
             }
             self.next_row();
             if V::TANGENTS { self.start_row::<true>() } else { self.start_row::<false>() }
+        }
+    }
+
+    /// Visits what is left of the row, and leaves it at its end.
+    fn visit_row<V: Visit>(&mut self, mut visitor: V) -> V {
+        let (mut i, j) = self.position;
+        let row = &mut self.row;
+        loop {
+            visitor = visitor.point(&At { i, j, row, weights: &self.weights });
+            if i == self.last_in_row {
+                return visitor;
+            }
+            i += 1;
+            if V::TANGENTS { row.step::<true>(self.ladder) } else { row.step::<false>(self.ladder) }
         }
     }
 

@@ -6,7 +6,7 @@ use crate::num::{BINOMIAL, SURJECTIONS, Word};
 /// `table[b][a]` = Δ_r^a Δ_s^b φ at some point; `R` is the largest order it has room for.
 pub(crate) type Table<W, const R: usize> = [[W; R]; R];
 
-/// Δ_r^a Δ_s^b φ(0, 0) of φ = n_r^m n_s^h Σ B_a B_b·coefficient(a, b).
+/// Fills `t` with Δ_r^a Δ_s^b φ(0, 0) of φ = n_r^m n_s^h Σ B_a B_b·coefficient(a, b).
 ///
 /// φ is Σ c_kl i^k j^l with c_kl = (multinomial)·n^(…)·Δ_r^k Δ_s^l of the coefficients, and the a-th difference of
 /// i^k at 0 is a! S(k, a).
@@ -15,16 +15,17 @@ pub(crate) type Table<W, const R: usize> = [[W; R]; R];
 /// (of n_r) is e − k for both kinds. The limits `R - 1` change nothing; with them no index can be out of bounds.
 #[inline(never)]
 pub(crate) fn difference_table<W: Word, const R: usize>(
+    t: &mut Table<W, R>,
     form: &Form<'_>,
     coefficient: &dyn Fn(usize, usize) -> i64,
-) -> Table<W, R> {
+) {
     let (m, h) = (form.degrees.0.min(R - 1), form.degrees.1.min(R - 1));
     let row_end = |b: usize| form.last_row_entry(b).min(R - 1);
     let column_end = |a: usize| form.last_column_entry(a).min(R - 1);
     let (steps_r, steps_s) = form.table_steps();
     let power_r: [W; R] = powers(steps_r);
     let power_s: [W; R] = powers(if form.kind == Kind::Triangle { 1 } else { steps_s });
-    let mut t = [[W::ZERO; R]; R];
+    t.iter_mut().for_each(|row| row.fill(W::ZERO));
     for (b, row) in t.iter_mut().enumerate().take(h + 1) {
         let row = up_to(row, row_end(b));
         for (a, entry) in row.iter_mut().enumerate() {
@@ -32,7 +33,7 @@ pub(crate) fn difference_table<W: Word, const R: usize>(
         }
         differences(row);
     }
-    each_column(&mut t, m, |a, column| differences(up_to(column, column_end(a))));
+    each_column(t, m, |a, column| differences(up_to(column, column_end(a))));
     let by_s = BINOMIAL[h].into_iter().zip(power_s.iter().take(h + 1).rev());
     for (b, (row, (choices, power))) in t.iter_mut().zip(by_s).enumerate() {
         let end = row_end(b);
@@ -43,8 +44,7 @@ pub(crate) fn difference_table<W: Word, const R: usize>(
         }
         to_newton(row);
     }
-    each_column(&mut t, m, |a, column| to_newton(up_to(column, column_end(a))));
-    t
+    each_column(t, m, |a, column| to_newton(up_to(column, column_end(a))));
 }
 
 /// The entries up to `last`; none beyond the room.

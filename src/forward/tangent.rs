@@ -41,6 +41,14 @@ impl Weights {
         (1..R).fold(W::ZERO, |sum, a| sum.wrapping_plus(d[a].wrapping_mul_i64(self.r[a].into())))
     }
 
+    /// The derivative along the row of the given differences, up to one positive factor: L_r times those of the three
+    /// axes, shifted right by one common amount where they exceed 48 bits.
+    pub(crate) fn along_rows<W: Word, const R: usize>(&self, d: &[[W; R]; 3]) -> [i64; 3] {
+        let all = d.as_flattened().iter().fold(W::ZERO, |all, v| all | (*v ^ (*v >> (<W as Word>::BITS - 1) as usize)));
+        let shift = (<W as Word>::BITS - all.leading_zeros()).saturating_sub(48) as usize;
+        d.map(|d| self.along_row(&d.map(|v| -> i64 { (v >> shift).as_() })))
+    }
+
     /// L_s times the derivative across the rows, as differences along the row.
     pub(crate) fn across<W: Word, const R: usize>(&self, table: &[[W; R]; R]) -> [W; R] {
         let mut sums = [W::ZERO; R];

@@ -20,8 +20,16 @@ pub(crate) trait Site {
     /// [`Visit::TANGENTS`].
     fn tangents(&self) -> [[Self::Word; 3]; 2];
 
+    /// The mixed derivative, each component exact up to one truncation and a positive factor, where one of the tangents
+    /// vanishes: next to a collapsed side it is what that tangent grows from.
+    fn twist(&self) -> [i64; 3];
+
     /// The bits below the rounded coordinate plus 1/2: about 2^bits times the fraction, below 2^bits.
     fn below(&self, axis: usize, fraction: &Fraction) -> u32;
+
+    /// ⌊2^bits·value⌋, exact: equal values give equal results, whatever lattices they belong to. Polynomial lattices
+    /// are carried as residuals then.
+    fn floor(&self, axis: usize, fraction: &Fraction) -> i32;
 }
 
 /// What happens at the points of a walk.
@@ -46,7 +54,7 @@ pub(crate) trait Visit: Sized {
 ///
 /// Where the denominator N is constant: e·2^bits/N without a division. With N' = ⌊N/2^s⌋ of 16 bits (s < 0 for a small
 /// N) and q = ⌊2^(16+bits)/(N' + 1)⌋ it is ⌊⌊e/2^s⌋·q/2^16⌋: below 2^bits, never decreasing in e, and less than two
-/// below the exact value for bits ≤ 8.
+/// below the exact value for bits ≤ 8, less than four for bits ≤ 11.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fraction {
     pub(crate) bits: u32,
@@ -56,7 +64,7 @@ pub(crate) struct Fraction {
 }
 
 impl Fraction {
-    /// The reader for the constant denominator `scale`; `bits` is at most 8.
+    /// The reader for the constant denominator `scale`; `bits` is at most 11.
     pub(crate) fn of(scale: u128, bits: u32) -> Self {
         let used = 128 - scale.leading_zeros();
         let (shift, up) = (used.saturating_sub(16), 16_u32.saturating_sub(used));
@@ -68,6 +76,15 @@ impl Fraction {
     pub(crate) fn read<W: Word>(&self, residual: W) -> u32 {
         let high: i32 = (residual >> self.shift as usize).as_();
         ((high as u32) << self.up).wrapping_mul(self.factor) >> 16
+    }
+
+    /// ⌊e·2^bits/N⌋ for the constant denominator N with 2N < 2^w, exact: [`read`](Self::read) and one correction. What
+    /// is left over lies in 0 ..= 2N − 1, so it is right modulo 2^w.
+    #[inline(always)]
+    pub(crate) fn exact<W: Word>(&self, e: W, scale: W) -> u32 {
+        let near = self.read(e);
+        let rest = (e << self.bits as usize).wrapping_minus(scale.wrapping_mul_i64(near.into()));
+        near + u32::from(!rest.below(scale))
     }
 
     /// ⌊e·2^bits/d⌋ for 0 ≤ e < d < 2^(w−1), by restoring division: for denominators that change from point to point.
@@ -93,14 +110,15 @@ mod tests {
     #[test]
     fn fractions_are_within_two_of_the_exact_ones_and_never_fall() {
         for scale in [1_u128, 2, 10, 1000, 65_535, 65_536, 65_537, 1 << 40, (1 << 50) + 12_345] {
-            for bits in [0, 3, 8] {
+            for (bits, off) in [(0, 2), (3, 2), (8, 2), (11, 4)] {
                 let (fraction, mut last) = (Fraction::of(scale, bits), 0);
                 for k in 0..=200_u128.min(scale - 1) {
                     let e = (scale - 1) * k / 200_u128.min(scale - 1).max(1);
                     let exact = ((e << bits) / scale) as u32;
                     let ours = fraction.read(e as i64);
-                    assert!(ours <= exact && ours + 2 > exact && ours >= last, "{e}/{scale}: {ours} for {exact}");
+                    assert!(ours <= exact && ours + off > exact && ours >= last, "{e}/{scale}: {ours} for {exact}");
                     assert_eq!(fraction.divide(e as i64, scale as i64), exact);
+                    assert_eq!(fraction.exact(e as i64, scale as i64), exact);
                     last = ours;
                 }
             }

@@ -27,6 +27,7 @@ struct At<'a, W, const R: usize> {
     point: [i32; 3],
     row: &'a Row<W, R>,
     weights: &'a Weights,
+    scale: W,
 }
 
 impl<W: Word, const R: usize> Site for At<'_, W, R> {
@@ -53,9 +54,22 @@ impl<W: Word, const R: usize> Site for At<'_, W, R> {
         [core::array::from_fn(|axis| self.weights.along_row(&self.row.d[axis])), self.row.v.map(|v| v[0])]
     }
 
+    fn twist(&self) -> [i64; 3] {
+        self.weights.along_rows(&self.row.v)
+    }
+
     #[inline(always)]
     fn below(&self, axis: usize, fraction: &Fraction) -> u32 {
         fraction.read(self.row.e[axis])
+    }
+
+    #[inline(always)]
+    fn floor(&self, axis: usize, fraction: &Fraction) -> i32 {
+        // value = x + (e − ⌊N/2⌋)/N.
+        let e = self.row.e[axis].wrapping_minus(self.scale >> 1);
+        let (x, e) =
+            if e < W::ZERO { (self.point[axis] - 1, e.wrapping_plus(self.scale)) } else { (self.point[axis], e) };
+        (x << fraction.bits) + fraction.exact(e, self.scale) as i32
     }
 }
 
@@ -63,6 +77,7 @@ impl<W: Word, const R: usize> Site for At<'_, W, R> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Walker<K: Kernel, const R: usize> {
     kernel: K,
+    scale: K::Word,
     table: [Table<K::Word, R>; 3],
     /// (x, e) at the start of the row, per axis.
     start: ([i32; 3], [K::Word; 3]),
@@ -77,23 +92,43 @@ pub(crate) struct Walker<K: Kernel, const R: usize> {
 impl<K: Kernel, const R: usize> Walker<K, R> {
     /// The walk over `form`, whose degrees are below `R`.
     pub(crate) fn new(kernel: K, form: &Form<'_>, budget: &Budget) -> Self {
+        let mut walker = Self::blank(kernel);
+        walker.set_up(form, budget);
+        walker
+    }
+
+    /// No walk yet: for [`set_up`](Self::set_up) in place, which spares the stack a copy.
+    #[inline(always)]
+    pub(crate) fn blank(kernel: K) -> Self {
         let zero = K::Word::ZERO;
-        let drop = 16 - budget.fraction_bits;
-        let table = |axis| difference_table(form, &|a, b| form.bits(axis, a, b) >> drop);
-        let mut walker = Self {
+        Self {
             kernel,
-            table: core::array::from_fn(table),
+            scale: zero,
+            table: [[[zero; R]; R]; 3],
             start: ([0; 3], [zero; 3]),
             row: Row { x: [0; 3], e: [zero; 3], d: [[zero; R]; 3], v: [[zero; R]; 3] },
-            weights: Weights::of(form.degrees),
+            weights: Weights::of((0, 0)),
             position: (0, 0),
-            last_in_row: form.last_in_row(0),
-            last_row: form.last_row(),
-            shrinks: form.kind == Kind::Triangle,
-        };
-        walker.place(form, budget);
-        walker.start_row::<true>();
-        walker
+            last_in_row: 0,
+            last_row: 0,
+            shrinks: false,
+        }
+    }
+
+    /// Starts the walk over `form`, whose degrees are below `R`.
+    #[inline(never)]
+    pub(crate) fn set_up(&mut self, form: &Form<'_>, budget: &Budget) {
+        let drop = 16 - budget.fraction_bits;
+        for (axis, table) in self.table.iter_mut().enumerate() {
+            difference_table(table, form, &|a, b| form.bits(axis, a, b) >> drop);
+        }
+        self.scale = K::Word::truncate(budget.scale as i128);
+        self.weights = Weights::of(form.degrees);
+        self.last_in_row = form.last_in_row(0);
+        self.last_row = form.last_row();
+        self.shrinks = form.kind == Kind::Triangle;
+        self.place(form, budget);
+        self.start_row::<true>();
     }
 
     /// Sets x and e at the first point.
@@ -150,8 +185,8 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
     }
 
     /// Visits what is left of the lattice.
-    #[inline]
-    pub(crate) fn visit<V: Visit>(mut self, mut visitor: V) -> V {
+    #[inline(always)]
+    pub(crate) fn visit<V: Visit>(&mut self, mut visitor: V) -> V {
         if self.position.1 > self.last_row {
             return visitor;
         }
@@ -178,14 +213,14 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
         }
     }
 
-    /// Visits what is left of the row.
+    /// Visits what is left of the row, and leaves it at its end.
     #[inline(always)]
-    fn visit_row<V: Visit>(&self, mut visitor: V) -> V {
-        let mut row = self.row;
+    fn visit_row<V: Visit>(&mut self, mut visitor: V) -> V {
         let (mut i, j) = self.position;
+        let row = &mut self.row;
         loop {
             let point = core::array::from_fn(|axis| self.kernel.read(row.x[axis], row.e[axis]));
-            visitor = visitor.point(&At { i, j, point, row: &row, weights: &self.weights });
+            visitor = visitor.point(&At { i, j, point, row, weights: &self.weights, scale: self.scale });
             if i == self.last_in_row {
                 return visitor;
             }
@@ -199,7 +234,7 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
 
     /// [`visit`](Self::visit) for visitors of points only, with a kernel that has [`Kernel::bits`].
     #[inline]
-    fn visit_in_lanes<V: Visit>(mut self, mut visitor: V, mut lanes: Lanes<R>) -> V {
+    fn visit_in_lanes<V: Visit>(&mut self, mut visitor: V, mut lanes: Lanes<R>) -> V {
         let mut chunk = Chunk::default();
         loop {
             let (mut i, j) = self.position;
@@ -213,7 +248,14 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
                     lanes.next(&mut chunk);
                     let count = (self.last_in_row - i + 1).min(CHUNK as u32);
                     for (i, point) in (i..).zip(chunk.points(count)) {
-                        visitor = visitor.point(&At { i, j, point, row: &self.row, weights: &self.weights });
+                        visitor = visitor.point(&At {
+                            i,
+                            j,
+                            point,
+                            row: &self.row,
+                            weights: &self.weights,
+                            scale: self.scale,
+                        });
                     }
                     i += count;
                 }

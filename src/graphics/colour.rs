@@ -99,6 +99,14 @@ pub struct Ramps<'a, C> {
     pub ramps: &'a [&'a [C]],
 }
 
+#[cfg(feature = "defmt")]
+impl<C> defmt::Format for Ramps<'_, C> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let stops: usize = self.ramps.iter().map(|ramp| ramp.len()).sum();
+        defmt::write!(f, "{} ramps with {} stops", self.ramps.len(), stops);
+    }
+}
+
 /// A colour type whose values can be mixed.
 pub trait Mix: PixelColor + Default {
     /// `self` at 0, `other` at 255, channels linear in between, rounded half up.

@@ -261,3 +261,11 @@ impl Iterator for CurvePixels {
 }
 
 impl core::iter::FusedIterator for CurvePixels {}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for CurvePixels {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let (_, most) = self.size_hint();
+        defmt::write!(f, "at most {} curve pixels left, moved by ({}, {})", most, self.offset.x, self.offset.y);
+    }
+}

@@ -145,3 +145,10 @@ impl<S: Surface, C: Shade, const BUFFER: usize> embedded_graphics::transform::Tr
         self.translate_mut(by)
     }
 }
+
+#[cfg(feature = "defmt")]
+impl<S, C, const BUFFER: usize> defmt::Format for Model<'_, S, C, BUFFER> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "model moved by ({}, {}): {}", self.offset.x, self.offset.y, self.scene);
+    }
+}

@@ -160,3 +160,10 @@ impl<S> Transform for Patches<'_, S> {
         self
     }
 }
+
+#[cfg(feature = "defmt")]
+impl<S> defmt::Format for Patches<'_, S> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "{} patches moved by ({}, {})", self.patches.len(), self.offset.x, self.offset.y);
+    }
+}

@@ -13,6 +13,7 @@
 
 mod coord;
 mod round;
+mod text;
 mod trig;
 mod wide;
 mod word;
@@ -24,4 +25,5 @@ pub use word::Word;
 
 pub(crate) use coord::{bits_i16f16, bits_i32f32};
 pub(crate) use round::{BINOMIAL, SURJECTIONS, div_half_up, div_up, shift_half_up, shift_up, sqrt_up};
+pub(crate) use text::{Decimal, binary32};
 pub(crate) use wide::Wide;

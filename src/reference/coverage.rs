@@ -183,6 +183,18 @@ impl Coverage {
         Mesh::new(net, mesh).for_each_triangle(|triangle| self.add_triangle(triangle));
     }
 
+    /// Adds the centres that the surface covers with the side that faces the viewer: those in triangles of its mesh whose
+    /// normal, in the sense of S_r × S_s and turned where the patch is `inward`, has z < 0.
+    pub fn add_front<C: Coord>(&mut self, net: SurfaceNet<'_, C>, mesh: (u32, u32), inward: bool) {
+        Mesh::new(net, mesh).for_each_triangle(|triangle| {
+            let [a, b, c] = triangle;
+            let turn = orientation(a, b, c);
+            if if inward { turn > 0 } else { turn < 0 } {
+                self.add_triangle(triangle);
+            }
+        });
+    }
+
     /// Adds the centres in a closed triangle of positive area.
     #[inline]
     fn add_triangle(&mut self, [a, b, c]: [Vertex; 3]) {
@@ -257,6 +269,25 @@ impl core::fmt::Display for Coverage {
             f.write_str("\n")?;
         }
         Ok(())
+    }
+}
+
+#[cfg(feature = "defmt")]
+mod format {
+    use super::{Centres, Coverage};
+    use defmt::{Format, Formatter};
+
+    impl Format for Coverage {
+        fn format(&self, f: Formatter<'_>) {
+            let (origin, size) = (self.origin(), self.size());
+            defmt::write!(f, "{} of {} pixels at {} covered", self.count(), size, origin);
+        }
+    }
+
+    impl Format for Centres<'_> {
+        fn format(&self, f: Formatter<'_>) {
+            defmt::write!(f, "{} covered centres left", self.left);
+        }
     }
 }
 

@@ -1,13 +1,11 @@
 //! Levels and colours of points that are seen.
 
 use super::depth::DepthWindow;
-use super::light::{Light, normal};
-use super::pen::{Brush, Spot, normal_inside};
+use super::light::{Light, Side, normal_on};
+use super::pen::{Brush, Spot};
 use super::style::Style;
 use super::tangents::Tangents;
 use super::tile::{Fragment, Paint};
-use crate::forward::Form;
-use crate::patch::SurfaceNet;
 
 /// What the levels of a scene depend on.
 #[derive(Clone, Copy, Debug)]
@@ -43,18 +41,18 @@ impl<P: Paint> Brush for Canvas<'_, P> {
 pub(super) struct Shader<'s, 'c, P: Paint> {
     pub(super) shading: Shading<'s>,
     pub(super) canvas: Canvas<'c, P>,
-    /// The net of the piece, with all its bits.
-    pub(super) net: SurfaceNet<'s>,
-    pub(super) form: &'s Form<'s>,
+    /// Which way normals point.
+    pub(super) side: Side,
+    /// Of the piece with all its bits; of a rational one without its weights.
     pub(super) tangents: Tangents<'s>,
 }
 
 impl<P: Paint> Brush for Shader<'_, '_, P> {
     fn dab(&mut self, spot: Spot, known: Option<Option<[i32; 3]>>) {
-        let Shading { light, style, window } = self.shading;
+        let (Shading { light, style, window }, side) = (self.shading, self.side);
         let mut found = || {
-            let known = known.unwrap_or_else(|| normal(self.tangents.at(spot.i, spot.j)));
-            known.or_else(|| normal_inside(self.net, self.form, spot.i, spot.j)).unwrap_or([0, 0, -1])
+            let known = known.unwrap_or_else(|| normal_on(side, self.tangents.at(spot.i, spot.j)));
+            known.or_else(|| normal_on(side, self.tangents.inside(spot.i, spot.j))).unwrap_or([0, 0, -1])
         };
         let shade = match style {
             Style::Shaded => light.level(found()),

@@ -9,21 +9,27 @@ use crate::geometry::Point3;
 use crate::patch::{SurfaceNet, triangle_index};
 
 /// A vector in the plane of the screen, in 2^-16.
-type Vector = [i64; 2];
+type Vector = [i32; 2];
 
-/// Differences beyond this are not looked at: 16384 pixels. Products then fit 63 bits.
-const LONGEST: i64 = 1 << 30;
+/// Vectors beyond this are not looked at: 16384 pixels. Sums of two products then fit 63 bits.
+const LONGEST: u32 = 1 << 30;
 
+/// The vector from one point to another; a component of 2^31 stands for those that do not fit.
 fn between(from: &Point3, to: &Point3) -> Vector {
-    [i64::from(to.x.to_bits()) - i64::from(from.x.to_bits()), i64::from(to.y.to_bits()) - i64::from(from.y.to_bits())]
+    let gap = |a: i32, b: i32| b.checked_sub(a).unwrap_or(i32::MIN);
+    [gap(from.x.to_bits(), to.x.to_bits()), gap(from.y.to_bits(), to.y.to_bits())]
+}
+
+fn times(a: i32, b: i32) -> i64 {
+    i64::from(a) * i64::from(b)
 }
 
 fn cross(a: Vector, b: Vector) -> i64 {
-    a[0] * b[1] - a[1] * b[0]
+    times(a[0], b[1]) - times(a[1], b[0])
 }
 
 fn dot(a: Vector, b: Vector) -> i64 {
-    a[0] * b[0] + a[1] * b[1]
+    times(a[0], b[0]) + times(a[1], b[1])
 }
 
 /// All α·right + β·left with α, β ≥ 0: less than half a turn from the one to the other.
@@ -38,7 +44,7 @@ impl Cone {
     fn around<I: Iterator<Item = Vector>>(each: impl Fn() -> I) -> Option<Self> {
         let mut cone: Option<Self> = None;
         for v in each() {
-            if v[0].abs() >= LONGEST || v[1].abs() >= LONGEST {
+            if v[0].unsigned_abs() >= LONGEST || v[1].unsigned_abs() >= LONGEST {
                 return None;
             }
             let Some(Self { right, left }) = &mut cone else {
@@ -97,14 +103,28 @@ fn differences<'n>(net: &SurfaceNet<'n>, along_s: bool) -> impl Iterator<Item = 
     (0..last).flat_map(move |a| (0..=width(a)).flat_map(move |b| (0..mixed).filter_map(move |c| pair(a, b, c))))
 }
 
+/// The cones of both directions.
+fn cones(net: &SurfaceNet<'_>) -> Option<(Cone, Cone)> {
+    if let (SurfaceNet::Tensor(net), Some(points)) = (net, net.points().first_chunk::<16>())
+        && net.degrees() == (3, 3)
+    {
+        let along_r: [Vector; 12] = core::array::from_fn(|k| between(&points[k & 15], &points[(k + 4) & 15]));
+        let along_s: [Vector; 12] = core::array::from_fn(|k| {
+            let from = k + k / 3;
+            between(&points[from & 15], &points[(from + 1) & 15])
+        });
+        return Cone::around(|| along_r.iter().copied()).zip(Cone::around(|| along_s.iter().copied()));
+    }
+    Cone::around(|| differences(net, false)).zip(Cone::around(|| differences(net, true)))
+}
+
 /// Whether no point of a piece faces the viewer: z of S_r × S_s is nowhere negative, or nowhere positive where that
 /// normal points inwards. Where the cones are too wide to tell, and for rational triangles, the answer is no.
 pub(super) fn faces_away(net: &SurfaceNet<'_>, inward: bool) -> bool {
     if net.is_triangle() && net.weights().is_some() {
         return false;
     }
-    let Some(along_r) = Cone::around(|| differences(net, false)) else { return false };
-    let Some(along_s) = Cone::around(|| differences(net, true)) else { return false };
+    let Some((along_r, along_s)) = cones(net) else { return false };
     let (never_negative, never_positive) = along_r.signs(&along_s);
     if inward { never_positive } else { never_negative }
 }

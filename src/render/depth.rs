@@ -5,9 +5,10 @@ use super::style::Lines;
 /// Where z lies in a scene: the depth of z is (z + 1/2 − low)·2^bits, divided by 2^drop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct DepthWindow {
-    low: i32,
-    /// Bits below the unit, at most 8.
+    /// Bits of depth below the unit of z: at most 8, more where z is halved.
     pub(super) bits: u32,
+    /// What is taken off.
+    offset: i32,
     /// 1 where the range is beyond 15 bits, else 0.
     drop: u32,
     deepest: u16,
@@ -21,7 +22,7 @@ impl DepthWindow {
     pub(super) fn of(low: i32, high: i32) -> Self {
         let used = 32 - ((high - low).unsigned_abs() + 1).leading_zeros();
         let (bits, drop) = (15_u32.saturating_sub(used).min(8), used.saturating_sub(15));
-        let mut window = Self { low, bits, drop, deepest: 1 };
+        let mut window = Self { bits, offset: low << bits, drop, deepest: 1 };
         window.deepest = window.depth(high, (1 << bits) - 1).max(1);
         window
     }
@@ -29,8 +30,21 @@ impl DepthWindow {
     /// The depth of a rounded z and the fraction bits below it.
     #[inline(always)]
     pub(super) fn depth(self, z: i32, fraction: u32) -> u16 {
-        // Tips of normals may stand nearer than the window.
-        let depth = (((z.wrapping_sub(self.low).max(0) as u32) << self.bits) | fraction) >> self.drop;
+        // Tips of normals may stand nearer than the window. z has 16 bits, halved ones fewer.
+        let depth = ((z << self.bits) | fraction as i32).wrapping_sub(self.offset).max(0) >> self.drop;
+        depth.min(Self::LARGEST.into()) as u16
+    }
+
+    /// The window for z halved so many times: with z' = z/2^k it is told z' + 1/2, which is (z + 2^(k−1))/2^k.
+    pub(super) fn halved(self, halvings: u32) -> Self {
+        let more = ((1 << halvings) - 1) << self.bits >> 1;
+        Self { bits: self.bits + halvings, offset: self.offset + more, ..self }
+    }
+
+    /// The depth of ⌊256·z⌋.
+    #[inline(always)]
+    pub(super) fn depth_of_256(self, z: i32) -> u16 {
+        let depth = ((z + 128) >> (8 - self.bits)).wrapping_sub(self.offset).max(0) >> self.drop;
         depth.min(Self::LARGEST.into()) as u16
     }
 
@@ -50,6 +64,23 @@ impl DepthWindow {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn halved_values_have_the_same_depths() {
+        for (low, high) in [(-150, 170), (-30_000, -29_950), (0, 32_766)] {
+            let window = DepthWindow::of(low, high);
+            for k in 1..=3 {
+                let halved = window.halved(k);
+                for z in low..=high {
+                    // z + 1/2 in units of 2^k, plus 1/2, with halved.bits fraction bits.
+                    let shifted = (2 * z + (1 << k)) << halved.bits >> (k + 1);
+                    let (whole, fraction) = (shifted >> halved.bits, shifted & ((1 << halved.bits) - 1));
+                    let exact = window.depth(z, (1 << window.bits) >> 1);
+                    assert!(halved.depth(whole, fraction as u32).abs_diff(exact) <= 1, "{low} {high} {k} {z}");
+                }
+            }
+        }
+    }
 
     #[test]
     fn the_range_fills_15_bits_and_no_more() {

@@ -1,5 +1,6 @@
 //! Pictures pulled band by band.
 
+use super::grid::{Facet, Facets, Filler};
 use super::tile::{Area, Paint, Tile};
 use super::{RenderError, Scene};
 use crate::patch::Surface;
@@ -16,6 +17,10 @@ pub struct Statistics {
     pub splits: u32,
     /// Lattice points generated.
     pub points: u64,
+    /// Vertices of grids generated.
+    pub vertices: u64,
+    /// Facets filled; one that meets several bands counts in each, but for a list, where it counts once.
+    pub facets: u64,
 }
 
 impl core::ops::AddAssign for Statistics {
@@ -24,6 +29,8 @@ impl core::ops::AddAssign for Statistics {
         self.pieces += other.pieces;
         self.splits += other.splits;
         self.points += other.points;
+        self.vertices += other.vertices;
+        self.facets += other.facets;
     }
 }
 
@@ -75,6 +82,8 @@ pub struct Frame<'a, S, P: Paint> {
     rows: u32,
     next: u32,
     statistics: Statistics,
+    /// The list, and the row that it starts at.
+    facets: Option<(Facets<'a>, u32)>,
 }
 
 impl<'a, S: Surface, P: Paint> Frame<'a, S, P> {
@@ -96,7 +105,49 @@ impl<'a, S: Surface, P: Paint> Frame<'a, S, P> {
             return Err(RenderError::Area { width: area.width, height: rows });
         }
         let rows = rows.min(area.height);
-        Ok(Self { scene, paint, background, area, rows, next: 0, statistics: Statistics::default() })
+        Ok(Self { scene, paint, background, area, rows, next: 0, statistics: Statistics::default(), facets: None })
+    }
+
+    /// The same picture, the facets of the bands to come made once instead of anew for each band that they meet: for bands of
+    /// [`Fill::Grid`](super::Fill::Grid). Scenes that have no facets ignore the list.
+    ///
+    /// `links` holds one number for each band and each facet. A teapot of 320 × 240 pixels in bands of 16 rows at a
+    /// tolerance of 1 pixel takes 1950 facets, 62 KB, and 3.9 KB of links; without its back sides 990, 32 KB and 2 KB.
+    ///
+    /// ```
+    /// use embedded_surfaces::num::I16F16;
+    /// use embedded_surfaces::patch::BilinearPatch;
+    /// use embedded_surfaces::render::{Area, Facet, Fill, Fragment, Frame, Light, RenderError, Scene, Style};
+    /// use embedded_surfaces::subdivide::{PatchTopology, topology};
+    /// let square = [BilinearPatch::from_ints([[[1, 1, 0], [1, 6, 0]], [[6, 1, 0], [6, 6, 0]]])?];
+    /// let mut edges = [PatchTopology::default()];
+    /// topology(&square, &mut edges)?;
+    /// let scene = Scene::new(&square, Light::default(), Style::Shaded)?.with_topology(&edges)?;
+    /// let scene = scene.with_fill(Fill::Grid { tolerance: I16F16::ONE })?;
+    /// let grey = |f: Fragment| f.shade;
+    /// let area = Area { x: 0, y: 0, width: 8, height: 8 };
+    /// let refused = Frame::new(scene, &grey, 0, area, 3)?.with_facets(&mut [], &mut []).map(|_| ());
+    /// let needed = RenderError::Facets { needed: 1, given: 0, needed_links: 4, given_links: 0 };
+    /// assert_eq!(refused, Err(needed));
+    /// let (mut facets, mut links) = ([Facet::EMPTY; 1], [0; 4]);
+    /// let mut frame = Frame::new(scene, &grey, 0, area, 3)?.with_facets(&mut facets, &mut links)?;
+    /// let (mut colour, mut depth) = ([0; 24], [0; 24]);
+    /// while let Some(band) = frame.next_band(&mut colour, &mut depth)? {
+    ///     // Send band.pixels().
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`RenderError::Facets`] says how many there must be.
+    pub fn with_facets(mut self, facets: &'a mut [Facet], links: &'a mut [u16]) -> Result<Self, RenderError> {
+        let height = self.area.height - self.next;
+        let left = Area { y: self.area.y.saturating_add_unsigned(self.next), height, ..self.area };
+        if let Some((facets, statistics)) = self.scene.facets(left, self.rows, facets, links)? {
+            self.facets = Some((facets, self.next));
+            self.statistics += statistics;
+        }
+        Ok(self)
     }
 
     /// The pixels that each buffer must hold.
@@ -124,7 +175,14 @@ impl<'a, S: Surface, P: Paint> Frame<'a, S, P> {
             let error = RenderError::Buffer { needed, colour: colour.len(), depth: depth.len() };
             let colour = colour.get_mut(..needed).ok_or(error)?;
             let mut tile = Tile::new(area, &mut *colour, depth, self.background)?;
-            self.statistics += self.scene.draw(&mut tile, self.paint);
+            match &mut self.facets {
+                Some((facets, first)) => {
+                    let band = (self.next - *first).checked_div(self.rows).unwrap_or(0) as usize;
+                    let end = area.y.saturating_add_unsigned(area.height);
+                    facets.draw(band, end, &mut Filler::new(&mut tile, self.paint));
+                }
+                None => self.statistics += self.scene.draw(&mut tile, self.paint),
+            }
             &*colour
         };
         self.next += area.height;
@@ -135,5 +193,25 @@ impl<'a, S: Surface, P: Paint> Frame<'a, S, P> {
     #[must_use]
     pub const fn statistics(&self) -> Statistics {
         self.statistics
+    }
+}
+
+#[cfg(feature = "defmt")]
+mod format {
+    use super::{Band, Frame};
+    use crate::render::Paint;
+    use defmt::{Format, Formatter};
+
+    impl<P> Format for Band<'_, P> {
+        fn format(&self, f: Formatter<'_>) {
+            defmt::write!(f, "band of {}", self.area);
+        }
+    }
+
+    impl<S, P: Paint> Format for Frame<'_, S, P> {
+        fn format(&self, f: Formatter<'_>) {
+            let (area, rows, next) = (self.area, self.rows, self.next);
+            defmt::write!(f, "frame of {} in bands of {} rows, {} rows drawn, {}", area, rows, next, self.scene);
+        }
     }
 }

@@ -101,16 +101,48 @@ impl Light {
     }
 }
 
-/// The normal U × V, turned to the viewer, with components of at most 2^15; `None` where it vanishes.
+/// The normal U × V, turned to the viewer.
+#[cfg(all(test, feature = "std"))]
+pub(super) fn normal<W: Word>(tangents: [[W; 3]; 2]) -> Option<[i32; 3]> {
+    normal_on(Side::Viewer, tangents)
+}
+
+/// Which way a normal points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    /// To the viewer: both sides of a patch are lit alike.
+    Viewer,
+    /// As U × V.
+    Along,
+    /// As V × U.
+    Against,
+}
+
+/// The normal of two tangents, with components of at most 2^15; `None` where it vanishes.
 ///
-/// It is turned by the sign of the untruncated z: at a silhouette the level jumps with it.
-pub(super) fn normal<W: Word>([u, v]: [[W; 3]; 2]) -> Option<[i32; 3]> {
+/// To the viewer it is turned by the sign of the untruncated z: at a silhouette the level jumps with it.
+pub(super) fn normal_on<W: Word>(side: Side, [u, v]: [[W; 3]; 2]) -> Option<[i32; 3]> {
     let (u, v) = (truncate(u, 30), truncate(v, 30));
     let [a, b] = [u, v].map(|t| t.map(i64::from));
     // Two products of 30-bit numbers stay below 2^61.
     let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-    let cross = if cross[2] > 0 { cross.map(|c| -c) } else { cross };
+    let turned = side == Side::Against || (side == Side::Viewer && cross[2] > 0);
+    let cross = if turned { cross.map(|c| -c) } else { cross };
+    (cross[0] | cross[1] | cross[2] != 0).then(|| truncate(cross, 15))
+}
+
+/// The normal U × V as it is, with components of at most 2^15, from tangents of at most 14 bits; `None` where it
+/// vanishes.
+pub(super) fn normal_of([u, v]: [[i16; 3]; 2]) -> Option<[i32; 3]> {
+    let [a, b] = [u, v].map(|t| t.map(i32::from));
+    // Two products of 14-bit numbers stay below 2^29.
+    let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
     (cross != [0; 3]).then(|| truncate(cross, 15))
+}
+
+/// A tangent in 14 bits and a sign.
+pub(super) fn short<W: Word>(tangent: [W; 3]) -> [i16; 3] {
+    truncate(tangent, 14).map(|c| c as i16)
 }
 
 /// The vector with its components shifted right by one common amount: from −2^bits to 2^bits − 1.

@@ -2,6 +2,7 @@
 
 use super::brush::Canvas;
 use super::depth::DepthWindow;
+use super::light::Side;
 use super::pen::{Ink, Pen, Rows, normal_inside};
 use super::plan::Plan;
 use super::style::{Lines, Style};
@@ -75,12 +76,13 @@ impl<'a, P: Paint> LineDrawing<'a, '_, P> {
     fn walk(&mut self, plan: &Plan<'_>, rows: Rows) {
         let (area, colour, depth) = self.tile.parts();
         let window = self.window;
-        plan.draw(Pen {
+        plan.draw(&mut Pen {
             area,
             depth,
             window,
             fraction: Fraction::of(plan.budget.scale, window.bits),
             ink: Ink::Line(window.bias()),
+            side: Side::Viewer,
             form: &plan.form,
             rows,
             points: &mut self.points,

@@ -1,7 +1,7 @@
 //! What happens at a lattice point: clip, depth test, and the brush where it is seen.
 
 use super::depth::DepthWindow;
-use super::light::normal;
+use super::light::{Side, normal_on};
 use super::tangents::row_range;
 use super::tile::{Area, is_nearest, is_seen, occlude};
 use crate::forward::{Form, Fraction, Site, Visit};
@@ -36,30 +36,22 @@ pub(super) trait Brush {
 }
 
 /// Draws the points of one lattice into a tile. One type for all colours: what a walker is made for.
-pub(super) struct Pen<'p, const NORMALS: bool> {
+pub(super) struct Pen<'p> {
     pub(super) area: Area,
     pub(super) depth: &'p mut [u16],
     pub(super) window: DepthWindow,
     pub(super) fraction: Fraction,
     pub(super) ink: Ink,
+    /// Which way the normals that a walk knows point.
+    pub(super) side: Side,
     pub(super) form: &'p Form<'p>,
     pub(super) rows: Rows,
     pub(super) points: &'p mut u64,
     pub(super) brush: &'p mut dyn Brush,
 }
 
-impl<'p> Pen<'p, false> {
-    /// The pen for walks that know normals.
-    pub(super) fn with_normals(self) -> Pen<'p, true> {
-        let Self { area, depth, window, fraction, ink, form, rows, points, brush } = self;
-        Pen { area, depth, window, fraction, ink, form, rows, points, brush }
-    }
-}
-
-impl<const NORMALS: bool> Visit for Pen<'_, NORMALS> {
-    const TANGENTS: bool = NORMALS;
-
-    fn wants_row(&mut self, j: u32) -> bool {
+impl Pen<'_> {
+    fn row(&mut self, j: u32) -> bool {
         let wanted = match self.rows {
             Rows::All => true,
             Rows::Every(stride) => j.checked_rem(stride) == Some(0),
@@ -72,10 +64,10 @@ impl<const NORMALS: bool> Visit for Pen<'_, NORMALS> {
     }
 
     #[inline(always)]
-    fn point<S: Site>(self, at: &S) -> Self {
+    fn touch<S: Site, const NORMALS: bool>(&mut self, at: &S) {
         let [x, y, z] = at.point();
-        let Some(index) = self.area.index(x, y) else { return self };
-        let Some(stored) = self.depth.get_mut(index) else { return self };
+        let Some(index) = self.area.index(x, y) else { return };
+        let Some(stored) = self.depth.get_mut(index) else { return };
         let depth = self.window.depth(z, at.below(2, &self.fraction));
         let seen = match self.ink {
             Ink::Fill => is_nearest(stored, depth),
@@ -84,9 +76,38 @@ impl<const NORMALS: bool> Visit for Pen<'_, NORMALS> {
         };
         if seen {
             let spot = Spot { i: at.i(), j: at.j(), x, y, index, depth };
-            let normal = if NORMALS { Some(normal(at.tangents())) } else { None };
+            let normal = if NORMALS { Some(normal_on(self.side, at.tangents())) } else { None };
             self.brush.dab(spot, normal);
         }
+    }
+}
+
+/// The visitor is the reference: a walk then copies a pointer, not the pen.
+impl Visit for &mut Pen<'_> {
+    fn wants_row(&mut self, j: u32) -> bool {
+        self.row(j)
+    }
+
+    #[inline(always)]
+    fn point<S: Site>(self, at: &S) -> Self {
+        self.touch::<S, false>(at);
+        self
+    }
+}
+
+/// A pen for walks that know normals.
+pub(super) struct NormalPen<'a, 'p>(pub(super) &'a mut Pen<'p>);
+
+impl Visit for NormalPen<'_, '_> {
+    const TANGENTS: bool = true;
+
+    fn wants_row(&mut self, j: u32) -> bool {
+        self.0.row(j)
+    }
+
+    #[inline(always)]
+    fn point<S: Site>(self, at: &S) -> Self {
+        self.0.touch::<S, true>(at);
         self
     }
 }
@@ -122,6 +143,13 @@ fn meets(form: &Form<'_>, j: u32, band: (i32, i32)) -> bool {
 #[cold]
 #[inline(never)]
 pub(super) fn normal_inside(net: SurfaceNet<'_>, form: &Form<'_>, i: u32, j: u32) -> Option<[i32; 3]> {
+    normal_on(Side::Viewer, tangents_inside(net, form, i, j)?)
+}
+
+/// The tangents there.
+#[cold]
+#[inline(never)]
+pub(super) fn tangents_inside(net: SurfaceNet<'_>, form: &Form<'_>, i: u32, j: u32) -> Option<[[i64; 3]; 2]> {
     let half = u64::from(form.centred);
     let part = |index: u32, steps: u32, range: u64| {
         let doubled = (2 * u64::from(index) + half) * range;
@@ -148,7 +176,7 @@ pub(super) fn normal_inside(net: SurfaceNet<'_>, form: &Form<'_>, i: u32, j: u32
             _ => return None,
         }
     };
-    normal(tangents.map(|t| t.to_array().map(|c| c.to_bits())))
+    Some(tangents.map(|t| t.to_array().map(|c| c.to_bits())))
 }
 
 /// Barycentric coordinates (u, v, w) from those of a turned triangle.

@@ -1,27 +1,41 @@
 //! The pieces of a patch: split at midpoints while it pays, depth first, without a list of pieces.
 //!
-//! A piece costs the points of its cheapest hole-free sampling and [`SETUP`]. A tensor-product piece is halved in the
-//! direction that promises more, a triangle quartered, if its parts cost less together than it does alone; what does not
-//! fit 64 bits is quartered. Nothing but the piece enters the decision, so every band finds the same pieces.
+//! A tensor-product piece of more than [`LARGEST`] points is halved in the direction that promises fewer. A triangle or a
+//! rational piece is split (a triangle into quarters) if its parts cost less together than it does alone, where a piece
+//! costs the points of its cheapest hole-free sampling and [`SETUP`]. What does not fit 64 bits is quartered. Nothing but
+//! the piece enters the decision, so every band finds the same pieces.
 
 use super::plan::fits;
-use crate::forward::{Estimate, Sampling, piece_sampling};
+use crate::forward::{Estimate, PieceSlopes, Sampling};
 use crate::geometry::Point3;
 use crate::num::I16F16;
 use crate::patch::{MAX_DEGREE, SurfaceNet};
 use crate::subdivide::{Cut, Direction, Half, Quarter, Source, part_net};
 
-/// What setting up a piece costs, in points.
-const SETUP: u64 = 16;
+/// The most points of a polynomial tensor-product piece: about what a bicubic can have with 32-bit accumulators, which
+/// take half the instructions of wider ones on a Cortex-M.
+const LARGEST: u64 = 300;
+
+/// What setting up another piece counts for, in points.
+const SETUP: u64 = 24;
 
 /// How often a patch is split at most on the way to a piece.
-pub(super) const DEPTH: usize = 8;
+const DEPTH: usize = 8;
 
-/// Slots for nets: one per level, and one for what is only looked at.
-const SLOTS: usize = DEPTH + 1;
+/// The room for nets of a class of patches: points of the largest, and how often they are split at most.
+const fn room(points: usize) -> (usize, usize) {
+    match points {
+        0..=16 => (16, 6),
+        17..=21 => (21, 6),
+        22..=45 => (45, 8),
+        _ => ((MAX_DEGREE + 1) * (MAX_DEGREE + 1), 8),
+    }
+}
 
-/// Storage for the pieces of patches of up to `LEN` points.
-type Slots<T, const LEN: usize> = [[T; LEN]; SLOTS];
+/// How often a patch with so many control points is split at most.
+pub(super) const fn depth(points: usize) -> usize {
+    room(points).1
+}
 
 /// What is done with pieces.
 pub(super) trait Pieces {
@@ -35,35 +49,54 @@ pub(super) trait Pieces {
     fn split(&mut self);
 }
 
-/// The bytes of stack that the pieces of a patch with `points` control points take.
-pub(super) const fn storage(points: usize, rational: bool) -> usize {
-    let room = if points <= 21 {
-        21
-    } else if points <= 45 {
-        45
-    } else {
-        (MAX_DEGREE + 1) * (MAX_DEGREE + 1)
+/// The bytes of stack that [`Scene::draw`](super::Scene::draw) takes at most for a patch like this on a 32-bit target.
+///
+/// A net for each level of splitting, 7 of 16 or 21 points or 9 of more, 12 bytes a point (16 with weights); the walk with
+/// its difference table: 1.7 KB up to degree 3, 4.3 KB up to 5, 6.6 KB for triangles and 13 KB for tensor products above,
+/// 5.5 KB for rational patches up to degree 3 and 20.5 KB above; 2.4 KB for the rest. `examples/fw_stack.rs` measures it.
+///
+/// ```
+/// use embedded_surfaces::patch::{BicubicPatch, Surface};
+/// use embedded_surfaces::render::stack_bytes;
+/// const FLAT: BicubicPatch = embedded_surfaces::const_net!(BicubicPatch::from_ints([[[0; 3]; 4]; 4]));
+/// assert_eq!(stack_bytes(FLAT.surface()), 5394);
+/// ```
+#[must_use]
+pub const fn stack_bytes(net: SurfaceNet<'_>) -> usize {
+    let (len, depth) = room(net.points().len());
+    let (m, h) = net.degrees();
+    let degree = if m > h { m } else { h };
+    let rational = net.weights().is_some();
+    let walk = match degree {
+        ..=3 if rational => 5500,
+        _ if rational => 20_500,
+        ..=3 => 1650,
+        ..=5 => 4300,
+        _ if net.is_triangle() => 6600,
+        _ => 13_000,
     };
-    SLOTS * room * (size_of::<Point3>() + if rational { size_of::<I16F16>() } else { 0 })
+    (depth + 1) * len * if rational { 16 } else { 12 } + walk + 2400
 }
 
 /// Walks the pieces of a patch.
 pub(super) fn each_piece(net: SurfaceNet<'_>, pieces: &mut dyn Pieces) {
     match (net.points().len(), net.weights().is_some()) {
-        (..=21, false) => with_room::<21, 0>(net, pieces),
-        (..=21, true) => with_room::<21, 21>(net, pieces),
-        (..=45, false) => with_room::<45, 0>(net, pieces),
-        (..=45, true) => with_room::<45, 45>(net, pieces),
-        (_, false) => with_room::<81, 0>(net, pieces),
-        (_, true) => with_room::<81, 81>(net, pieces),
+        (..=16, false) => with_room::<16, 0, 7>(net, pieces),
+        (..=16, true) => with_room::<16, 16, 7>(net, pieces),
+        (..=21, false) => with_room::<21, 0, 7>(net, pieces),
+        (..=21, true) => with_room::<21, 21, 7>(net, pieces),
+        (..=45, false) => with_room::<45, 0, 9>(net, pieces),
+        (..=45, true) => with_room::<45, 45, 9>(net, pieces),
+        (_, false) => with_room::<81, 0, 9>(net, pieces),
+        (_, true) => with_room::<81, 81, 9>(net, pieces),
     }
 }
 
 #[inline(never)]
-fn with_room<const LEN: usize, const WEIGHTS: usize>(net: SurfaceNet<'_>, pieces: &mut dyn Pieces) {
-    let mut points: Slots<Point3, LEN> = [[Point3::ORIGIN; LEN]; SLOTS];
-    let mut weights: Slots<I16F16, WEIGHTS> = [[I16F16::ONE; WEIGHTS]; SLOTS];
-    let (len, sampling) = (net.points().len(), piece_sampling(net, true));
+fn with_room<const LEN: usize, const WEIGHTS: usize, const SLOTS: usize>(net: SurfaceNet<'_>, pieces: &mut dyn Pieces) {
+    let mut points = [[Point3::ORIGIN; LEN]; SLOTS];
+    let mut weights = [[I16F16::ONE; WEIGHTS]; SLOTS];
+    let len = net.points().len();
     let weight_len = if WEIGHTS == 0 { 0 } else { len };
     let mut tree = Tree {
         root: net,
@@ -71,9 +104,9 @@ fn with_room<const LEN: usize, const WEIGHTS: usize>(net: SurfaceNet<'_>, pieces
         weights: weights.as_flattened_mut(),
         len,
         weight_len,
-        path: [Step { split: Split::R, part: 0, samplings: [sampling; 4] }; DEPTH],
+        path: [(Split::R, 0); DEPTH],
         depth: 0,
-        sampling,
+        deepest: SLOTS - 1,
     };
     tree.walk(pieces);
 }
@@ -101,14 +134,6 @@ impl Split {
     }
 }
 
-/// A split on the way to a piece: which part the way takes, and how the parts are sampled.
-#[derive(Clone, Copy, Debug)]
-struct Step {
-    split: Split,
-    part: usize,
-    samplings: [Sampling; 4],
-}
-
 /// The pieces on the way from the patch to the current one; piece k stands in slot k − 1.
 struct Tree<'n, 's> {
     root: SurfaceNet<'n>,
@@ -116,18 +141,18 @@ struct Tree<'n, 's> {
     weights: &'s mut [I16F16],
     len: usize,
     weight_len: usize,
-    path: [Step; DEPTH],
+    /// How each was split, and which part is on the way.
+    path: [(Split, usize); DEPTH],
     depth: usize,
-    /// How the current piece is sampled.
-    sampling: Sampling,
+    deepest: usize,
 }
 
 impl Tree<'_, '_> {
     fn walk(&mut self, pieces: &mut dyn Pieces) {
         loop {
-            let step = self.visit(pieces);
-            if let (Some(step), Some(way)) = (step, self.path.get_mut(self.depth)) {
-                *way = step;
+            let split = self.visit(pieces);
+            if let (Some(split), Some(way)) = (split, self.path.get_mut(self.depth)) {
+                *way = (split, 0);
                 self.depth += 1;
                 self.enter();
                 pieces.split();
@@ -138,17 +163,31 @@ impl Tree<'_, '_> {
     }
 
     /// Draws the current piece, or says how it is split.
-    fn visit(&mut self, pieces: &mut dyn Pieces) -> Option<Step> {
-        let (depth, sampling) = (self.depth, self.sampling);
+    fn visit(&mut self, pieces: &mut dyn Pieces) -> Option<Split> {
+        let (depth, deepest) = (self.depth, self.deepest);
         let (piece, slot, weight_slot) = self.current();
         if !pieces.wants(piece) {
             return None;
         }
-        let step = if depth < DEPTH { best_split(source(piece, depth), sampling, slot, weight_slot) } else { None };
-        if step.is_none() {
+        let slopes = PieceSlopes::of(piece);
+        let direct = !piece.is_triangle() && piece.weights().is_none();
+        if depth < deepest && direct && slopes.least_points() > LARGEST {
+            return Some(longer(piece));
+        }
+        let sampling = slopes.sampling(piece, true);
+        let split = if depth == deepest {
+            None
+        } else if (piece.degrees() != (3, 3) || !direct) && !fits(piece, sampling) {
+            Some(if piece.is_triangle() { Split::Triangles } else { Split::Squares })
+        } else if direct {
+            (sampling.points(false) > LARGEST).then(|| longer(piece))
+        } else {
+            split_that_pays(source(piece, depth), sampling, slot, weight_slot)
+        };
+        if split.is_none() {
             pieces.piece(piece, sampling, slot);
         }
-        step
+        split
     }
 
     /// The current piece, and the slots after it.
@@ -171,12 +210,10 @@ impl Tree<'_, '_> {
     /// Cuts the current piece from the one above it; whether there is one.
     fn enter(&mut self) -> bool {
         let Some(level) = self.depth.checked_sub(1) else { return false };
-        let Some(Step { split, part, samplings }) = self.path.get(level).copied() else { return false };
-        let (Some(cut), Some(sampling)) = (split.part(part), samplings.get(part)) else { return false };
-        self.sampling = *sampling;
+        let Some(part) = self.path.get(level).and_then(|(split, part)| split.part(*part)) else { return false };
         self.depth = level;
         let (parent, slot, weight_slot) = self.current();
-        source(parent, level).1.cut(cut, slot, weight_slot);
+        source(parent, level).1.cut(part, slot, weight_slot);
         self.depth = level + 1;
         true
     }
@@ -184,8 +221,8 @@ impl Tree<'_, '_> {
     /// Goes to the next piece that was not visited; whether there is one.
     fn advance(&mut self) -> bool {
         while let Some(level) = self.depth.checked_sub(1) {
-            if let Some(step) = self.path.get_mut(level) {
-                step.part += 1;
+            if let Some((_, part)) = self.path.get_mut(level) {
+                *part += 1;
             }
             if self.enter() {
                 return true;
@@ -202,37 +239,35 @@ fn source(piece: SurfaceNet<'_>, depth: usize) -> (SurfaceNet<'_>, Source<'_>) {
     (piece, if depth == 0 { source.with_long_weights() } else { source })
 }
 
+/// The halves that promise fewer points.
+fn longer(piece: SurfaceNet<'_>) -> Split {
+    if Estimate::of(piece).prefers_s() { Split::S } else { Split::R }
+}
+
 /// The split that pays, if any; looks at the parts in `slot`.
-fn best_split(
+fn split_that_pays(
     (piece, source): (SurfaceNet<'_>, Source<'_>),
     own: Sampling,
     slot: &mut [Point3],
     weights: &mut [I16F16],
-) -> Option<Step> {
+) -> Option<Split> {
     let (triangle, rational) = (piece.is_triangle(), piece.weights().is_some());
-    let must = !fits(piece, own);
-    let limit = if must { u64::MAX } else { own.points(triangle) + SETUP };
+    let limit = own.points(triangle) + SETUP;
     if limit <= 3 * SETUP {
         return None;
     }
-    let split = match (triangle, must) {
-        (true, _) => Split::Triangles,
-        (false, true) => Split::Squares,
-        (false, false) if Estimate::of(piece).prefers_s() => Split::S,
-        (false, false) => Split::R,
-    };
-    let mut step = Step { split, part: 0, samplings: [own; 4] };
-    let mut sum: u64 = 0;
-    for (index, sampling) in step.samplings.iter_mut().enumerate() {
-        let Some(part) = split.part(index) else { break };
+    let split = if triangle { Split::Triangles } else { longer(piece) };
+    let (mut sum, mut index) = (0, 0);
+    while let Some(part) = split.part(index) {
         source.cut(part, slot, weights);
         let net = part_net(piece, slot, weights);
-        *sampling = piece_sampling(net, true);
-        sum = sum.saturating_add(sampling.points(triangle) + SETUP);
+        let sampling = PieceSlopes::of(net).sampling(net, true);
+        sum += sampling.points(triangle) + SETUP;
         // Weights of parts have more bits than those of the patch may have had.
-        if sum >= limit || (rational && !fits(net, *sampling)) {
+        if sum >= limit || (rational && !fits(net, sampling)) {
             return None;
         }
+        index += 1;
     }
-    Some(step)
+    Some(split)
 }

@@ -1,13 +1,13 @@
 //! Which lattices a patch is drawn by, and with which walker.
 
-use super::pen::Pen;
-use super::pieces::DEPTH;
+use super::pen::{NormalPen, Pen};
+use super::pieces::depth;
 use crate::forward::{
-    Accumulator, Budget, Form, Kernel, LatticeError, QuotientWalker, Residual, Sampling, Visit, Walker, deepest_budget,
-    piece_budget, piece_sampling, piece_turn, tangent_bits,
+    Accumulator, Budget, Form, Kernel, LatticeError, PieceBudget, PieceSlopes, QuotientWalker, Residual, Sampling,
+    Visit, Walker, deepest_budget, piece_budget, tangent_bits,
 };
 use crate::geometry::Point3;
-use crate::num::{Coord, I16F16, Word};
+use crate::num::Word;
 use crate::patch::SurfaceNet;
 use crate::subdivide::part_net;
 
@@ -49,9 +49,9 @@ impl<'a> Plan<'a> {
     }
 
     /// Walks the lattice with any visitor, which may want tangents.
-    #[cfg(all(test, feature = "std"))]
     pub(super) fn walk<V: Visit>(&self, visitor: V) {
         match (self.width, self.form.weights().is_some()) {
+            // For pieces only.
             (Width::Cubic32, _) => {}
             (Width::Cubic64, false) => run::<_, _, 4>(Residual::<i64>::of(&self.budget), self, visitor),
             (Width::Quintic64, false) => run::<_, _, 6>(Residual::<i64>::of(&self.budget), self, visitor),
@@ -65,15 +65,16 @@ impl<'a> Plan<'a> {
 
 impl Plan<'_> {
     /// Walks the lattice with a pen.
-    pub(super) fn draw(&self, pen: Pen<'_, false>) {
+    pub(super) fn draw(&self, pen: &mut Pen<'_>) {
         match (self.width, self.form.weights().is_some()) {
             (Width::Cubic32, false) => run::<_, _, 4>(Residual::<i32>::of(&self.budget), self, pen),
             (Width::Cubic64, false) => run::<_, _, 4>(Residual::<i64>::of(&self.budget), self, pen),
             (Width::Quintic64, false) => run::<_, _, 6>(Residual::<i64>::of(&self.budget), self, pen),
             (Width::Full64, false) => run::<_, _, 9>(Residual::<i64>::of(&self.budget), self, pen),
             (Width::Full128, false) => run::<_, _, 9>(Residual::<i128>::of(&self.budget), self, pen),
-            (Width::Cubic64, true) => run_quotient::<i64, _, 4>(self, pen.with_normals()),
-            (_, true) => run_quotient::<i128, _, 9>(self, pen.with_normals()),
+            (Width::Cubic64, true) => run_quotient::<i64, _, 4>(self, NormalPen(pen)),
+            (_, true) if self.form.degree() < 4 => run_quotient::<i128, _, 4>(self, NormalPen(pen)),
+            (_, true) => run_quotient::<i128, _, 9>(self, NormalPen(pen)),
         }
     }
 }
@@ -81,99 +82,97 @@ impl Plan<'_> {
 /// One walk in a stack frame of its own: only the walker in use takes room.
 #[inline(never)]
 fn run<K: Kernel, V: Visit, const R: usize>(kernel: K, plan: &Plan<'_>, visitor: V) {
-    Walker::<K, R>::new(kernel, &plan.form, &plan.budget).visit(visitor);
+    let mut walker = Walker::<K, R>::blank(kernel);
+    walker.set_up(&plan.form, &plan.budget);
+    walker.visit(visitor);
 }
 
 /// The same for a rational patch.
 #[inline(never)]
 fn run_quotient<W: Word, V: Visit, const R: usize>(plan: &Plan<'_>, visitor: V) {
-    QuotientWalker::<W, R>::new(&plan.form, &plan.budget).visit(visitor);
+    let mut walker = QuotientWalker::<W, R>::blank();
+    walker.set_up(&plan.form, &plan.budget);
+    walker.visit(visitor);
 }
 
-/// How a piece is walked: one lattice, or a coarser one and its cells' centres.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PiecePlan {
+/// Calls `f` for each lattice of a piece, and with how often its z is halved: one, or a coarser one and its cells' centres.
+/// `room` holds as many points as the net.
+///
+/// # Errors
+/// [`LatticeError::Budget`] where 128 bits are too few, [`LatticeError::Steps`] above 2^24 steps.
+pub(super) fn each_lattice(
+    net: SurfaceNet<'_>,
     sampling: Sampling,
-    corners: (Budget, Width),
-    centres: Option<(Budget, Width)>,
+    room: &mut [Point3],
+    f: &mut dyn FnMut(&Plan<'_>, u32),
+) -> Result<(), LatticeError> {
+    let sampling = settled(net, sampling);
+    one_lattice(net, sampling, false, room, f)?;
+    if sampling.centres { one_lattice(net, sampling, true, room, f) } else { Ok(()) }
 }
 
-impl PiecePlan {
-    /// The plan for a piece at this sampling; without the centres, at more steps, where they need more than 64 bits.
-    ///
-    /// # Errors
-    /// [`LatticeError::Budget`] where 128 bits are too few, [`LatticeError::Steps`] above 2^24 steps.
-    pub(super) fn of(net: SurfaceNet<'_>, sampling: Sampling) -> Result<Self, LatticeError> {
-        let mut sampling = sampling;
-        if sampling.centres {
-            let plan = Self::at(net, sampling);
-            if plan.is_ok_and(|plan| plan.centres.is_some_and(|(_, width)| width != Width::Full128)) {
-                return plan;
-            }
-            sampling = piece_sampling(net, false);
-        }
-        Self::at(net, sampling)
+/// The sampling without the centres, at more steps, where they need more than 64 bits.
+fn settled(net: SurfaceNet<'_>, sampling: Sampling) -> Sampling {
+    if !sampling.centres {
+        return sampling;
     }
+    let form = Form::surface(net, (sampling.steps.r(), sampling.steps.s())).centres();
+    let fits = lattice(net, &form).is_ok_and(|(_, width)| width != Width::Full128);
+    if fits { sampling } else { PieceSlopes::of(net).sampling(net, false) }
+}
 
-    fn at(net: SurfaceNet<'_>, sampling: Sampling) -> Result<Self, LatticeError> {
-        let steps = (sampling.steps.r(), sampling.steps.s());
+#[inline(never)]
+fn one_lattice(
+    net: SurfaceNet<'_>,
+    sampling: Sampling,
+    centred: bool,
+    room: &mut [Point3],
+    f: &mut dyn FnMut(&Plan<'_>, u32),
+) -> Result<(), LatticeError> {
+    let form = |net, steps| {
         let form = Form::surface(net, steps);
-        let corners = lattice(net, &form)?;
-        let centres = if sampling.centres { Some(lattice(net, &form.centres())?) } else { None };
-        Ok(Self { sampling, corners, centres })
-    }
-
-    /// Whether everything fits 64 bits.
-    fn is_short(&self) -> bool {
-        let short = |(_, width): (Budget, Width)| width != Width::Full128;
-        short(self.corners) && self.centres.is_none_or(short)
-    }
-
-    /// Calls `f` for each lattice of the piece; `room` holds as many points as the net.
-    pub(super) fn each_lattice(&self, net: SurfaceNet<'_>, room: &mut [Point3], mut f: impl FnMut(Plan<'_>)) {
-        let turn = piece_turn(&net, self.sampling);
-        let (r, s) = (self.sampling.steps.r(), self.sampling.steps.s());
-        let steps = if turn == 1 { (s, r) } else { (r, s) };
-        for (lattice, centred) in [(Some(self.corners), false), (self.centres, true)] {
-            let Some((budget, width)) = lattice else { continue };
-            let rounded = round_net(net, budget.fraction_bits, room);
-            let form = Form::surface(rounded, (1, 1)).turned(turn, steps);
-            f(Plan { form: if centred { form.centres() } else { form }, budget, width });
-        }
-    }
+        if centred { form.centres() } else { form }
+    };
+    let (r, s) = (sampling.steps.r(), sampling.steps.s());
+    let (PieceBudget { budget, halvings }, width) = lattice(net, &form(net, (r, s)))?;
+    let rounded = round_net(net, (budget.fraction_bits, halvings), room);
+    let turn = PieceSlopes::of(net).turn(net.is_triangle(), sampling.centres);
+    let form = form(rounded, (1, 1)).turned(turn, if turn == 1 { (s, r) } else { (r, s) });
+    f(&Plan { form, budget, width }, halvings);
+    Ok(())
 }
 
-/// The net with coordinates rounded half up to so many fraction bits: within 2^-(bits + 1), on the same curves from both
-/// sides of a seam where both keep as many.
-fn round_net<'a>(net: SurfaceNet<'a>, bits: u32, room: &'a mut [Point3]) -> SurfaceNet<'a> {
+/// The net with coordinates rounded half up to so many fraction bits, within 2^-(bits + 1), and z halved first.
+fn round_net<'a>(net: SurfaceNet<'a>, (bits, halvings): (u32, u32), room: &'a mut [Point3]) -> SurfaceNet<'a> {
     let (points, drop) = (net.points(), 16_u32.saturating_sub(bits));
-    if net.weights().is_some() || drop == 0 || room.len() < points.len() {
+    if net.weights().is_some() || drop + halvings == 0 || room.len() < points.len() {
         return net;
     }
+    let half = (1 << drop) >> 1;
     for (to, from) in room.iter_mut().zip(points) {
-        let round = |c: I16F16| {
-            let bits = (c.bits() + (1 << drop >> 1)) >> drop << drop;
-            I16F16::from_bits(bits as i32)
-        };
-        *to = Point3::from_array(from.to_array().map(round));
+        let round = |c: i32| (c + half) >> drop << drop;
+        let z = (from.z.to_bits() >> halvings) + half;
+        *to = Point3::from_bits(round(from.x.to_bits()), round(from.y.to_bits()), z >> drop << drop);
     }
     part_net(net, room, &[])
 }
 
 /// Whether a piece need not be split to be walked: a polynomial one in 64 bits, a rational one at all.
 pub(super) fn fits(net: SurfaceNet<'_>, sampling: Sampling) -> bool {
-    PiecePlan::of(net, sampling).is_ok_and(|plan| plan.is_short() || net.weights().is_some())
+    let Sampling { steps, .. } = settled(net, sampling);
+    let corners = lattice(net, &Form::surface(net, (steps.r(), steps.s())));
+    corners.is_ok_and(|(_, width)| width != Width::Full128 || net.weights().is_some())
 }
 
 /// The budget of a lattice of a piece and the walker that suits it.
-fn lattice(net: SurfaceNet<'_>, form: &Form<'_>) -> Result<(Budget, Width), LatticeError> {
+fn lattice(net: SurfaceNet<'_>, form: &Form<'_>) -> Result<(PieceBudget, Width), LatticeError> {
     if form.weights().is_some() {
         // Tangents, where they are wanted, were checked with the scene.
         let plan = Plan::of(*form, true).or_else(|_| Plan::of(*form, false))?;
-        return Ok((plan.budget, plan.width));
+        return Ok((PieceBudget { budget: plan.budget, halvings: 0 }, plan.width));
     }
     let budget = piece_budget(net, form)?;
-    let width = match (budget.accumulator, form.degree()) {
+    let width = match (budget.budget.accumulator, form.degree()) {
         (Accumulator::I32, _) => Width::Cubic32,
         (Accumulator::I64, ..4) => Width::Cubic64,
         (Accumulator::I64, ..6) => Width::Quintic64,
@@ -188,9 +187,9 @@ fn lattice(net: SurfaceNet<'_>, form: &Form<'_>) -> Result<(Budget, Width), Latt
 /// # Errors
 /// What the lattice of the patch (rational: undivided; polynomial: split as deep as it goes) does not fit.
 pub(super) fn check_pieces(net: SurfaceNet<'_>, normals: bool) -> Result<(), LatticeError> {
-    let sampling = piece_sampling(net, false);
+    let sampling = PieceSlopes::of(net).sampling(net, false);
     if net.weights().is_some() {
         return Plan::of(Form::surface(net, (sampling.steps.r(), sampling.steps.s())), normals).map(drop);
     }
-    deepest_budget(net, sampling, DEPTH as u32)
+    deepest_budget(net, sampling, depth(net.points().len()) as u32)
 }

@@ -3,21 +3,23 @@
 use super::brush::{Canvas, Shader, Shading};
 use super::cull::faces_away;
 use super::depth::DepthWindow;
-use super::light::Light;
+use super::grid::{self, Facet, Facets, Filler, Recorder, Segments};
+use super::light::{Light, Side};
 #[cfg(feature = "styled")]
 use super::lines::any_family;
 use super::lines::{LineDrawing, families, family};
 use super::pen::{Ink, Pen, Rows};
 use super::pieces::{Pieces, each_piece};
-use super::plan::{PiecePlan, check_pieces};
-use super::style::{Cull, Style};
+use super::plan::{Plan, check_pieces, each_lattice};
+use super::style::{Cull, Fill, Style};
 use super::tangents::Tangents;
 use super::tile::{Area, Paint, Tile};
 use super::{RenderError, Statistics};
-use crate::forward::{Fraction, LatticeError, Sampling};
+use crate::forward::{Fraction, Kind, LatticeError, Sampling};
 use crate::geometry::{Bounds, Point3};
 use crate::num::{Coord, I16F16};
 use crate::patch::{Surface, SurfaceNet};
+use crate::subdivide::PatchTopology;
 
 /// Rounded coordinates of a box: what pixels its points can fall on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,9 +78,12 @@ pub struct Scene<'a, S> {
     patches: &'a [S],
     light: Light,
     style: Style,
-    cull: Cull,
     window: DepthWindow,
     pixels: Option<PixelBox>,
+    cull: Cull,
+    fill: Fill,
+    topology: &'a [PatchTopology],
+    segments: Option<Segments>,
 }
 
 impl<S> Clone for Scene<'_, S> {
@@ -95,23 +100,144 @@ impl<'a, S: Surface> Scene<'a, S> {
     /// # Errors
     /// [`RenderError::Patch`] for the first patch whose hole-free lattice needs more than 128 bits.
     pub fn new(patches: &'a [S], light: Light, style: Style) -> Result<Self, RenderError> {
+        let scene = Self::unchecked(patches, light, style);
+        scene.check_exact()?;
+        Ok(scene)
+    }
+
+    /// A scene filled by facets from the start: what [`new`](Self::new), [`with_topology`](Self::with_topology) and
+    /// [`with_fill`](Self::with_fill) make in turn, without checking that exact points would fit the engine. That check
+    /// costs more than a frame of facets.
+    ///
+    /// ```
+    /// use embedded_surfaces::num::I16F16;
+    /// use embedded_surfaces::patch::BilinearPatch;
+    /// use embedded_surfaces::render::{Light, Scene, Style};
+    /// use embedded_surfaces::subdivide::{PatchTopology, topology};
+    /// let square = [BilinearPatch::from_ints([[[1, 1, 0], [1, 6, 0]], [[6, 1, 0], [6, 6, 0]]])?];
+    /// let mut edges = [PatchTopology::default()];
+    /// topology(&square, &mut edges)?;
+    /// let scene = Scene::grid(&square, &edges, I16F16::ONE, Light::default(), Style::Shaded)?;
+    /// # let _ = scene;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`with_topology`](Self::with_topology) and [`with_fill`](Self::with_fill), and for a style of lines
+    /// those of [`new`](Self::new).
+    pub fn grid(
+        patches: &'a [S],
+        topology: &'a [PatchTopology],
+        tolerance: I16F16,
+        light: Light,
+        style: Style,
+    ) -> Result<Self, RenderError> {
+        let scene = Self { topology, ..Self::unchecked(patches, light, style) };
+        if style.lines().is_some() {
+            scene.check_exact()?;
+        }
+        scene.with_fill(Fill::Grid { tolerance })
+    }
+
+    fn check_exact(&self) -> Result<(), RenderError> {
+        for (index, patch) in self.patches.iter().enumerate() {
+            check(patch.surface(), self.style).map_err(|error| RenderError::Patch { index, error })?;
+        }
+        Ok(())
+    }
+
+    fn unchecked(patches: &'a [S], light: Light, style: Style) -> Self {
         let mut all: Option<Bounds> = None;
-        for (index, patch) in patches.iter().enumerate() {
-            let net = patch.surface();
-            check(net, style).map_err(|error| RenderError::Patch { index, error })?;
-            let bounds = net.bounds();
+        for patch in patches {
+            let bounds = patch.surface().bounds();
             all = Some(all.map_or(bounds, |b| b.union(&bounds)));
         }
         let pixels = all.map(|b| PixelBox::of(&b));
         let window = pixels.map_or(DepthWindow::of(0, 0), |p| DepthWindow::of(p.min[2], p.max[2]));
-        Ok(Self { patches, light, style, cull: Cull::None, window, pixels })
+        let (cull, fill) = (Cull::None, Fill::Exact);
+        Self { patches, light, style, window, pixels, cull, fill, topology: &[], segments: None }
     }
 
-    /// The scene with these faces drawn. Culling takes part in filling and in hiding lines; lines themselves are drawn on
-    /// either side.
+    /// The same scene with these faces drawn. Culling takes part in filling and in hiding lines; lines themselves are
+    /// drawn on either side.
     #[must_use]
     pub const fn with_cull(self, cull: Cull) -> Self {
         Self { cull, ..self }
+    }
+
+    /// The same scene with what is known of how its patches meet: one entry for each of
+    /// [`subdivide::topology`](crate::subdivide::topology), found once in model space.
+    ///
+    /// # Errors
+    /// [`RenderError::Topology`] for another number of entries.
+    pub fn with_topology(self, topology: &'a [PatchTopology]) -> Result<Self, RenderError> {
+        if topology.len() != self.patches.len() {
+            return Err(RenderError::Topology { patches: self.patches.len(), given: topology.len() });
+        }
+        let scene = Self { topology, ..self };
+        if self.fill == Fill::Exact { Ok(scene) } else { scene.with_fill(self.fill) }
+    }
+
+    /// The same scene, filled by points or by facets. Styles of lines ignore it.
+    ///
+    /// Cost of [`Fill::Grid`]: the segment counts, one pass over the second differences of every net.
+    ///
+    /// # Errors
+    /// [`RenderError::Topology`] for a grid without [`with_topology`](Self::with_topology), [`RenderError::Tolerance`]
+    /// for a tolerance that is not positive, [`RenderError::Segments`] and [`RenderError::Patch`] for a patch whose
+    /// grid has more than 1024 segments in a direction or does not fit the engine.
+    pub fn with_fill(self, fill: Fill) -> Result<Self, RenderError> {
+        let Fill::Grid { tolerance } = fill else {
+            self.check_exact()?;
+            return Ok(Self { fill, segments: None, ..self });
+        };
+        if self.topology.len() != self.patches.len() {
+            return Err(RenderError::Topology { patches: self.patches.len(), given: self.topology.len() });
+        }
+        let segments = Segments::of(self.patches, self.topology, tolerance)?;
+        let scene = Self { fill, segments: Some(segments), ..self };
+        for index in 0..self.patches.len() {
+            if let Some(patch) = scene.grid_patch(index) {
+                let fits = grid::check(patch.net, patch.counts);
+                fits.map_err(|error| RenderError::Patch { index, error })?;
+            }
+        }
+        Ok(scene)
+    }
+
+    /// A patch and its grid; `None` where it is not drawn by one.
+    fn grid_patch(&self, index: usize) -> Option<grid::Patch<'a>> {
+        let segments = self.segments.filter(|_| self.style.lines().is_none())?;
+        let (patch, topology) = (self.patches.get(index)?, self.topology.get(index)?);
+        let net = patch.surface();
+        let (r, s) = segments.counts(net, topology);
+        let inward = (self.cull == Cull::Back).then(|| topology.is_inward());
+        Some(grid::Patch { net, index, counts: (r.into(), s.into()), inward })
+    }
+
+    /// The list of the facets in an area, for bands of `rows` rows; `None` where there are none in this style.
+    pub(super) fn facets<'b>(
+        &self,
+        area: Area,
+        rows: u32,
+        entries: &'b mut [Facet],
+        links: &'b mut [u16],
+    ) -> Result<Option<(Facets<'b>, Statistics)>, RenderError> {
+        if self.segments.is_none() || self.style.lines().is_some() {
+            return Ok(None);
+        }
+        let end = |start: i32, length: u32| start.saturating_add_unsigned(length);
+        let window = [area.x, end(area.x, area.width), area.y, end(area.y, area.height)];
+        let (mut recorder, mut statistics) = (Recorder::new(entries, window), Statistics::default());
+        for index in 0..self.patches.len() {
+            if let Some(patch) = self.grid_patch(index)
+                && PixelBox::of(&patch.net.bounds()).meets(&area, 0)
+            {
+                statistics.patches += 1;
+                statistics += grid::facets(&patch, (&self.light, self.style, self.window), &mut recorder);
+            }
+        }
+        Ok(Some((Facets::of(recorder, links, rows)?, statistics)))
     }
 
     /// The patches.
@@ -135,8 +261,8 @@ impl<'a, S: Surface> Scene<'a, S> {
 
     /// Draws the patches that meet the tile, in order; what is nearer than what was there stays.
     ///
-    /// Cost: every lattice point of those patches. Stack: 0.6 KB for patches up to degree 3, 2.3 KB above, 4.8 KB
-    /// where the lattice needs `i128`; rational patches a third more.
+    /// Cost: the points of the pieces that meet the tile, or the facets of the grid. Stack:
+    /// [`stack_bytes`](super::stack_bytes) of the largest patch.
     pub fn draw<P: Paint>(&self, tile: &mut Tile<'_, P::Pixel>, paint: &P) -> Statistics {
         let mut statistics = Statistics::default();
         if self.style.lines() == Some(true) {
@@ -150,11 +276,20 @@ impl<'a, S: Surface> Scene<'a, S> {
                 let mut lines = LineDrawing { tile, paint, patch, net, window: self.window, points: 0 };
                 lines.draw(self.style);
                 statistics.points += lines.points;
+            } else if let Some(patch) = self.grid_patch(patch) {
+                statistics += self.fill_facets(tile, paint, &patch);
             } else {
                 self.fill(tile, paint, (patch, net), Ink::Fill, &mut statistics);
             }
         });
         statistics
+    }
+
+    /// Fills the facets of one patch. Out of line: points and facets need not stand on the stack together.
+    #[inline(never)]
+    fn fill_facets<P: Paint>(&self, tile: &mut Tile<'_, P::Pixel>, paint: &P, patch: &grid::Patch<'a>) -> Statistics {
+        let mut filler = Filler::new(tile, paint);
+        grid::facets(patch, (&self.light, self.style, self.window), &mut filler)
     }
 
     /// Calls `f` for every patch whose box meets the tile.
@@ -172,6 +307,7 @@ impl<'a, S: Surface> Scene<'a, S> {
     }
 
     /// Draws the pieces of one patch that meet the tile.
+    #[inline(never)]
     fn fill<P: Paint>(
         &self,
         tile: &mut Tile<'_, P::Pixel>,
@@ -180,8 +316,9 @@ impl<'a, S: Surface> Scene<'a, S> {
         ink: Ink,
         statistics: &mut Statistics,
     ) {
+        let inward = self.topology.get(patch).is_some_and(PatchTopology::is_inward);
         let shading = Shading { light: &self.light, style: self.style, window: self.window };
-        each_piece(net, &mut Filling { shading, cull: self.cull, tile, paint, patch, inward: false, ink, statistics });
+        each_piece(net, &mut Filling { shading, cull: self.cull, tile, paint, patch, inward, ink, statistics });
     }
 }
 
@@ -197,34 +334,47 @@ struct Filling<'s, 'b, 't, P: Paint> {
     statistics: &'t mut Statistics,
 }
 
+impl<P: Paint> Filling<'_, '_, '_, P> {
+    /// Draws one lattice of a piece.
+    fn lattice(&mut self, piece: SurfaceNet<'_>, plan: &Plan<'_>, halvings: u32) {
+        let (area, colour, depth) = self.tile.parts();
+        let (form, window) = (&plan.form, self.shading.window.halved(halvings));
+        // A tensor-product lattice that is turned has its tangents exchanged.
+        let side = match (self.cull, self.inward != (form.kind == Kind::Tensor && form.turn() == 1)) {
+            (Cull::None, _) => Side::Viewer,
+            (Cull::Back, false) => Side::Along,
+            (Cull::Back, true) => Side::Against,
+        };
+        let mut shader = Shader {
+            shading: self.shading,
+            canvas: Canvas { paint: self.paint, patch: self.patch, colour },
+            side,
+            tangents: Tangents::new(piece, form),
+        };
+        plan.draw(&mut Pen {
+            area,
+            depth,
+            window,
+            fraction: Fraction::of(plan.budget.scale, window.bits),
+            ink: self.ink,
+            side,
+            form,
+            rows: Rows::in_band(form, (area.y, area.y.saturating_add_unsigned(area.height))),
+            points: &mut self.statistics.points,
+            brush: &mut shader,
+        });
+    }
+}
+
 impl<P: Paint> Pieces for Filling<'_, '_, '_, P> {
     fn wants(&mut self, piece: SurfaceNet<'_>) -> bool {
         meets(piece, &self.tile.area()) && (self.cull == Cull::None || !faces_away(&piece, self.inward))
     }
 
     fn piece(&mut self, piece: SurfaceNet<'_>, sampling: Sampling, room: &mut [Point3]) {
-        // Checked in `new`, so it cannot fail here.
-        let Ok(plan) = PiecePlan::of(piece, sampling) else { return };
         self.statistics.pieces += 1;
-        let (area, colour, depth) = self.tile.parts();
-        let band = (area.y, area.y.saturating_add_unsigned(area.height));
-        let window = self.shading.window;
-        plan.each_lattice(piece, room, |plan| {
-            let form = &plan.form;
-            let canvas = Canvas { paint: self.paint, patch: self.patch, colour };
-            let tangents = Tangents::new(piece, form);
-            plan.draw(Pen {
-                area,
-                depth,
-                window,
-                fraction: Fraction::of(plan.budget.scale, window.bits),
-                ink: self.ink,
-                form,
-                rows: Rows::in_band(form, band),
-                points: &mut self.statistics.points,
-                brush: &mut Shader { shading: self.shading, canvas, net: piece, form, tangents },
-            });
-        });
+        // Checked in `new`, so it cannot fail here.
+        let _ = each_lattice(piece, sampling, room, &mut |plan, halvings| self.lattice(piece, plan, halvings));
     }
 
     fn split(&mut self) {
@@ -254,4 +404,12 @@ fn check(net: SurfaceNet<'_>, style: Style) -> Result<(), LatticeError> {
         }
     }
     Ok(())
+}
+
+#[cfg(feature = "defmt")]
+impl<S> defmt::Format for Scene<'_, S> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let (patches, style, cull) = (self.patches.len(), self.style, self.cull);
+        defmt::write!(f, "scene of {} patches, {}, cull {}, {}", patches, style, cull, self.light);
+    }
 }

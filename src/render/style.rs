@@ -1,5 +1,7 @@
 //! How patches are drawn.
 
+use crate::num::I16F16;
+
 /// How patches are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -45,8 +47,40 @@ pub enum Cull {
     /// Both: patches are two-sided.
     #[default]
     None,
-    /// Pieces of patches that face away from the viewer everywhere are left out; nothing that faces the viewer is.
+    /// The outer one. Pieces of patches that face away from the viewer everywhere are left out, nothing that faces the
+    /// viewer is; what is drawn next to a silhouette is lit by its outward normal, so the light does not jump there.
     Back,
+}
+
+/// How patches are filled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Fill {
+    /// Exact points, close enough together to leave no pixel centre out: the reference quality.
+    #[default]
+    Exact,
+    /// Facets between the exact points of a coarse grid: the fast path. Needs
+    /// [`Scene::with_topology`](super::Scene::with_topology).
+    ///
+    /// Segments are counted per edge class, the classes k, k + 64, k + 128, … together: scenes with more than 64 classes
+    /// may get more segments than they need.
+    Grid {
+        /// How far the surface may be from its facets on the screen, in pixels; positive.
+        tolerance: I16F16,
+    },
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for Fill {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        match self {
+            Self::Exact => defmt::write!(f, "Exact"),
+            Self::Grid { tolerance } => {
+                let bits = tolerance.to_bits();
+                defmt::write!(f, "Grid {{ tolerance: {}/2^16 }}", bits);
+            }
+        }
+    }
 }
 
 /// A highlight: specular·max(0, N·H)^exponent is added to the level, with H halfway between light and viewer.

@@ -51,13 +51,6 @@ impl Weights {
     fn of(degree: usize, t: u32) -> Self {
         let rest = (1 << FRACTION) - t;
         let mut weights = Self { here: [0; ORDER], below: [0; ORDER] };
-        if degree == 3 {
-            let (tt, ss, ts) = (times(t, t), times(rest, rest), times(t, rest));
-            let (tts, sst) = (times(ts, t), times(ts, rest));
-            weights.below[..3].copy_from_slice(&[ss, 2 * ts, tt]);
-            weights.here[..4].copy_from_slice(&[ss - sst, 3 * sst, 3 * tts, tt - tts]);
-            return weights;
-        }
         weights.here[0] = 1 << FRACTION;
         for d in 1..=degree.min(MAX_DEGREE) {
             weights.below = weights.here;
@@ -69,6 +62,21 @@ impl Weights {
         }
         weights
     }
+}
+
+/// The Bernstein weights of degrees 2 and 3.
+#[inline(always)]
+fn cubic(t: u32) -> ([i32; 3], [i32; 4]) {
+    let rest = (1 << FRACTION) - t;
+    let (tt, ss, ts) = (times(t, t), times(rest, rest), times(t, rest));
+    let (tts, sst) = (times(ts, t), times(ts, rest));
+    ([ss, 2 * ts, tt].map(|w| w as i32), [ss - sst, 3 * sst, 3 * tts, tt - tts].map(|w| w as i32))
+}
+
+/// The product of two 32-bit numbers.
+#[inline(always)]
+fn product(a: i32, b: i32) -> i64 {
+    i64::from(a) * i64::from(b)
 }
 
 /// Σ weight·(to − from)/2 along the three axes; halves of differences fit 32 bits.
@@ -99,6 +107,8 @@ pub(super) struct Tangents<'a> {
     /// Degrees along a row and across, and the strides in storage; of a tensor-product piece.
     degrees: (usize, usize),
     strides: (usize, usize),
+    /// How often the differences of a bicubic can be doubled.
+    doublings: Option<u32>,
     /// The row that the control vectors belong to.
     row: Option<u32>,
     /// Control vectors, along the row, of the tangent along it (one degree less) and of the one across.
@@ -113,19 +123,57 @@ impl<'a> Tangents<'a> {
         let width = net.degrees().1 + 1;
         let strides = if form.turn() == 0 { (width, 1) } else { (1, width) };
         let zero = [[0; 3]; ORDER];
-        Self { net, along, turn: form.turn(), degrees: form.degrees, strides, row: None, by_r: zero, by_s: zero }
+        Self {
+            net,
+            along,
+            turn: form.turn(),
+            degrees: form.degrees,
+            strides,
+            doublings: None,
+            row: None,
+            by_r: zero,
+            by_s: zero,
+        }
+    }
+
+    /// The tangents 1/64 of the way from lattice point (i, j) inwards: where those at the point span no plane.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn inside(&mut self, i: u32, j: u32) -> [[i32; 3]; 2] {
+        let share = if self.net.is_triangle() { 61 } else { 62 };
+        let inwards = |t: u32| (1 << (FRACTION - 6)) + (t >> 6) * share;
+        let (r, s) = (inwards(self.along[0].at(i)), inwards(self.along[1].at(j)));
+        self.row = None;
+        self.at_parameters(r, s, None)
     }
 
     /// The tangents at lattice point (i, j).
     pub(super) fn at(&mut self, i: u32, j: u32) -> [[i32; 3]; 2] {
-        let (r, s) = (self.along[0].at(i), self.along[1].at(j));
+        self.at_parameters(self.along[0].at(i), self.along[1].at(j), Some(j))
+    }
+
+    /// The tangents at parameters; `row` is the number of the row where it may be used again.
+    #[inline(always)]
+    fn at_parameters(&mut self, r: u32, s: u32, row: Option<u32>) -> [[i32; 3]; 2] {
         if self.net.is_triangle() {
             let s = s.min((1 << FRACTION) - r);
             return triangle(self.net.points(), self.degrees.0, unturned(self.turn, [r, s, (1 << FRACTION) - r - s]));
         }
-        if self.row != Some(j) {
-            self.row = Some(j);
+        if row.is_none() || self.row != row {
+            self.row = row;
             self.collapse(s);
+        }
+        if self.degrees == (3, 3) {
+            let (below, here) = cubic(r);
+            let ([a, b, c, ..], [d, e, f, g, ..]) = (&self.by_r, &self.by_s);
+            let mut out = [[0; 3]; 2];
+            for axis in 0..3 {
+                let along = product(below[0], a[axis]) + product(below[1], b[axis]) + product(below[2], c[axis]);
+                let across = product(here[0], d[axis]) + product(here[1], e[axis]);
+                let across = across + product(here[2], f[axis]) + product(here[3], g[axis]);
+                (out[0][axis], out[1][axis]) = ((along >> FRACTION) as i32, (across >> FRACTION) as i32);
+            }
+            return out;
         }
         let m = self.degrees.0.min(MAX_DEGREE);
         let weights = Weights::of(m, r);
@@ -135,6 +183,16 @@ impl<'a> Tangents<'a> {
     /// The control vectors along the row at parameter `s`: differences of its control values, and Σ of those across it.
     #[inline(never)]
     fn collapse(&mut self, s: u32) {
+        if let Some(points) = self.net.points().first_chunk::<16>().filter(|_| self.degrees == (3, 3)) {
+            self.collapse_bicubic(points, s);
+        } else {
+            self.collapse_any(s);
+        }
+    }
+
+    /// [`collapse`](Self::collapse) for any degrees.
+    #[inline(never)]
+    fn collapse_any(&mut self, s: u32) {
         let (m, h) = self.degrees;
         let weights = Weights::of(h, s);
         let (mut along, mut across) = ([[0_i64; 3]; ORDER], [[0_i64; 3]; ORDER]);
@@ -163,6 +221,45 @@ impl<'a> Tangents<'a> {
         let (m, n) = (m.min(ORDER), (m + 1).min(ORDER));
         shorten(&along[..m], &mut self.by_r);
         shorten(&across[..n], &mut self.by_s);
+    }
+}
+
+impl Tangents<'_> {
+    /// [`collapse`](Self::collapse) for a bicubic. Coordinates are taken from the first point and doubled until the largest
+    /// has 30 bits; then the upper halves of the sums are what is wanted.
+    fn collapse_bicubic(&mut self, points: &[Point3; 16], s: u32) {
+        let halves = |p: &Point3| [p.x.to_bits() >> 1, p.y.to_bits() >> 1, p.z.to_bits() >> 1];
+        let origin = halves(&points[0]);
+        let doublings = *self.doublings.get_or_insert_with(|| {
+            let mut all = 0;
+            for p in points {
+                let [x, y, z] = halves(p);
+                let apart = |c: i32, o: i32| (c - o) ^ ((c - o) >> 31);
+                all |= apart(x, origin[0]) | apart(y, origin[1]) | apart(z, origin[2]);
+            }
+            (all as u32 | 1).leading_zeros().saturating_sub(2)
+        });
+        let (below, here) = cubic(s);
+        let mut before = [0_i64; 3];
+        for a in 0..4 {
+            let mut row = [[0; 4]; 3];
+            for b in 0..4 {
+                let [x, y, z] = halves(&points[(a * self.strides.0 + b * self.strides.1) & 15]);
+                row[0][b] = (x - origin[0]) << doublings;
+                row[1][b] = (y - origin[1]) << doublings;
+                row[2][b] = (z - origin[2]) << doublings;
+            }
+            for axis in 0..3 {
+                let [p, q, r, s] = row[axis];
+                let value = product(here[0], p) + product(here[1], q) + product(here[2], r) + product(here[3], s);
+                let slope = product(below[0], q - p) + product(below[1], r - q) + product(below[2], s - r);
+                self.by_s[a][axis] = (slope >> 32) as i32;
+                if a > 0 {
+                    self.by_r[a - 1][axis] = ((value - before[axis]) >> 32) as i32;
+                }
+                before[axis] = value;
+            }
+        }
     }
 }
 
@@ -224,7 +321,11 @@ fn triangle(points: &[Point3], degree: usize, [u, v, w]: [u32; 3]) -> [[i32; 3];
 /// curves of the degrees n − b through the control points of row b.
 pub(super) fn row_range(form: &Form<'_>, j: u32) -> (i64, i64) {
     let (m, h) = form.degrees;
-    let weights = Weights::of(h, Grid::of(form.steps.1, form.centred).at(j)).here;
+    let s = Grid::of(form.steps.1, form.centred).at(j);
+    if let Some(points) = form.points().first_chunk::<16>().filter(|_| (m, h) == (3, 3)) {
+        return bicubic_range(points, form.turn(), s);
+    }
+    let weights = Weights::of(h, s).here;
     if form.kind == Kind::Triangle {
         let (mut low, mut high) = (0, 0);
         for (b, weight) in weights.iter().enumerate().take(h + 1) {
@@ -245,4 +346,18 @@ pub(super) fn row_range(form: &Form<'_>, j: u32) -> (i64, i64) {
         range = (range.0.min(value), range.1.max(value));
     }
     (range.0 >> FRACTION, range.1 >> FRACTION)
+}
+
+/// [`row_range`] for a bicubic.
+fn bicubic_range(points: &[Point3; 16], turn: u8, s: u32) -> (i64, i64) {
+    let (_, here) = cubic(s);
+    let (along, across) = if turn == 0 { (4, 1) } else { (1, 4) };
+    let mut range = (i32::MAX, i32::MIN);
+    for a in 0..4 {
+        let y = |b: usize| points[(a * along + b * across) & 15].y.to_bits();
+        let value = product(here[0], y(0)) + product(here[1], y(1)) + product(here[2], y(2)) + product(here[3], y(3));
+        let value = (value >> FRACTION) as i32;
+        range = (range.0.min(value), range.1.max(value));
+    }
+    (range.0.into(), range.1.into())
 }

@@ -139,6 +139,15 @@ impl<'b, P: Copy> Tile<'b, P> {
     pub(super) fn parts(&mut self) -> (Area, &mut [P], &mut [u16]) {
         (self.area, self.colour, self.depth)
     }
+
+    /// The colours and stored depths of the rows from a row on.
+    #[inline(always)]
+    pub(super) fn rows_from(&mut self, row: usize) -> impl Iterator<Item = (&mut [P], &mut [u16])> {
+        let width = (self.area.width as usize).max(1);
+        let start = row * width;
+        let colour = self.colour.get_mut(start..).unwrap_or_default().chunks_exact_mut(width);
+        colour.zip(self.depth.get_mut(start..).unwrap_or_default().chunks_exact_mut(width))
+    }
 }
 
 /// Whether `depth` is nearer than what is stored; it is stored then, as drawn.
@@ -168,4 +177,12 @@ pub(super) fn is_seen(stored: &mut u16, depth: u16, bias: u16) -> bool {
         *stored = depth << 1;
     }
     seen
+}
+
+#[cfg(feature = "defmt")]
+impl<P> defmt::Format for Tile<'_, P> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let drawn = self.depth.iter().filter(|d| **d & 1 == 0).count();
+        defmt::write!(f, "tile of {}, {} pixels drawn", self.area, drawn);
+    }
 }

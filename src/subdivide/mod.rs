@@ -1,4 +1,4 @@
-//! Midpoint subdivision (Tian Jie 1989): nets in, nets of their parts out.
+//! Midpoint subdivision (Tian Jie 1989): nets in, nets of their parts out; and what is made of it.
 //!
 //! | form | where | growth and error |
 //! |---|---|---|
@@ -8,6 +8,9 @@
 //! How deep to go: [`depth_for`] asks the second differences of the net, before anything is subdivided; [`is_flat`]
 //! asks each part, whose displacements it tests. [`flatness`] is the bound behind the first. A [`Tolerance`] is checked
 //! once; a bound does not come out too small, whatever the net.
+//!
+//! How patches meet is found by [`topology`]; [`tessellate`] makes watertight meshes of them, as an iterator or in the
+//! caller's buffers ([`Tessellation::mesh`]), and [`write_stl`], [`write_stl_text`] and [`Mesh::write_obj`] write these.
 //!
 //! Both sides of a shared edge get the same bits: an edge of a part depends on the control points of the edge alone.
 //! Rational nets are subdivided in homogeneous coordinates, exactly, before points and weights are rounded.
@@ -45,10 +48,16 @@ mod flat;
 mod nets;
 mod rounded;
 mod stencil;
+mod tessellate;
+mod topology;
 
 pub use bounds::{MAX_DEPTH, depth_by_edges};
-pub use error::SubdivideError;
+pub use error::{Buffer, SubdivideError};
 pub use exact::{Direction, Half, Quarter, halve_curve, halve_tensor, quarter_triangle};
 pub use flat::Tolerance;
+pub use tessellate::{
+    Mesh, MeshBuffers, MeshSize, MeshVertex, Tessellation, Vertex, tessellate, write_stl, write_stl_text,
+};
+pub use topology::{PatchTopology, topology};
 
 pub(crate) use rounded::{Cut, Source, part_net};

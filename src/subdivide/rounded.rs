@@ -80,35 +80,37 @@ impl<'a> Source<'a> {
     pub(crate) fn cut(self, part: Cut, points: &mut [Point3], weights: &mut [I16F16]) {
         match self.weights {
             Some(by) => self.cut_weighted(by, part, points, weights),
-            None if self.cut_cubics(part, points) => {}
+            None if self.cut_bicubic(part, points) => {}
             None if self.points.len() <= 16 => self.cut_points::<16>(part, points),
             None => self.cut_points::<MOST>(part, points),
         }
     }
 
-    /// [`cut_points`](Self::cut_points) for halves along a direction of degree 3, from differences that fit 32 bits;
-    /// whether they do.
-    fn cut_cubics(self, part: Cut, points: &mut [Point3]) -> bool {
+    /// [`cut_points`](Self::cut_points) for halves of bicubics, from differences that fit 32 bits; whether they do.
+    fn cut_bicubic(self, part: Cut, points: &mut [Point3]) -> bool {
         let Cut::Half(direction, half) = part else { return false };
-        let (m, h) = self.degrees;
-        let (degree, rows, along, across) = match direction {
-            Direction::R => (m, h + 1, h + 1, 1),
-            Direction::S => (h, m + 1, 1, h + 1),
+        let (Some(from), Some(to)) = (self.points.first_chunk::<16>(), points.first_chunk_mut::<16>()) else {
+            return false;
         };
-        if degree != 3 || points.len() < self.points.len() {
+        if self.degrees != (3, 3) {
             return false;
         }
-        for row in 0..rows {
-            let place = |k: usize| row * across + if half == Half::First { k } else { 3 - k } * along;
-            let row = [place(0), place(1), place(2), place(3)];
-            let Some(parts) = cubic_half(row.map(|at| self.points.get(at))) else { return false };
-            for (at, part) in row.into_iter().zip(parts) {
-                if let Some(point) = points.get_mut(at) {
-                    *point = part;
-                }
+        let (along, across) = if direction == Direction::R { (4, 1) } else { (1, 4) };
+        // From the far end for the second half.
+        let (start, step) = if half == Half::First { (0, along) } else { (3 * along, 0_usize.wrapping_sub(along)) };
+        let mut far = 0;
+        for row in 0..4 {
+            let place = |k: usize| start.wrapping_add(row * across).wrapping_add(k.wrapping_mul(step)) & 15;
+            let places = [place(0), place(1), place(2), place(3)];
+            let [a, b, c, d] = [&from[places[0]], &from[places[1]], &from[places[2]], &from[places[3]]];
+            let x = cubic_half([a.x, b.x, c.x, d.x].map(I16F16::to_bits), &mut far);
+            let y = cubic_half([a.y, b.y, c.y, d.y].map(I16F16::to_bits), &mut far);
+            let z = cubic_half([a.z, b.z, c.z, d.z].map(I16F16::to_bits), &mut far);
+            for k in 0..4 {
+                to[places[k]] = Point3::from_bits(x[k], y[k], z[k]);
             }
         }
-        true
+        far == 0
     }
 
     #[inline(never)]
@@ -155,26 +157,22 @@ impl<'a> Source<'a> {
     }
 }
 
-/// The first half of a cubic, rounded half up: the sums are taken from the first point, so they fit 32 bits where no other
-/// is 2048 units away. `None` beyond.
+/// The first half of a cubic, rounded half up: sums are taken from the first value, so they fit 32 bits where no other is
+/// 2048 units away. Else `far` is not 0.
 #[inline(always)]
-fn cubic_half(row: [Option<&Point3>; 4]) -> Option<[Point3; 4]> {
-    let [a, b, c, d] = [row[0]?, row[1]?, row[2]?, row[3]?];
-    let mut out = [*a; 4];
-    for axis in 0..3 {
-        let [a, b, c, d] = [a, b, c, d].map(|p| bits(p, axis) as i32);
-        let [u, v, w] = [b, c, d].map(|p| p.wrapping_sub(a));
-        // Magnitudes, or one more, without a branch. Legal coordinates may differ by more than 31 bits.
-        let far = |v: i32, p: i32| (v ^ (v >> 31)) >> 27 | ((p ^ a) & (p ^ v)) >> 31;
-        if far(u, b) | far(v, c) | far(w, d) != 0 {
-            return None;
-        }
-        let sums = [(u + 1) >> 1, (2 * u + v + 2) >> 2, (3 * (u + v) + w + 4) >> 3];
-        for (point, sum) in out.iter_mut().skip(1).zip(sums) {
-            set(point, axis, i64::from(a + sum));
-        }
-    }
-    Some(out)
+fn cubic_half([a, b, c, d]: [i32; 4], far: &mut i32) -> [i32; 4] {
+    let [u, v, w] = [b.wrapping_sub(a), c.wrapping_sub(a), d.wrapping_sub(a)];
+    // Magnitudes, or one less; and differences that did not fit, which have the wrong sign.
+    let magnitude = |v: i32| v ^ (v >> 31);
+    let wrapped = |p: i32, v: i32| (p ^ a) & (p ^ v);
+    *far |= (magnitude(u) | magnitude(v) | magnitude(w)) >> 27 | (wrapped(b, u) | wrapped(c, v) | wrapped(d, w)) >> 31;
+    let two = u.wrapping_add(v);
+    let sums = [
+        u.wrapping_add(1) >> 1,
+        u.wrapping_add(two).wrapping_add(2) >> 2,
+        two.wrapping_mul(3).wrapping_add(w).wrapping_add(4) >> 3,
+    ];
+    [a, a.wrapping_add(sums[0]), a.wrapping_add(sums[1]), a.wrapping_add(sums[2])]
 }
 
 fn bits(p: &Point3, axis: usize) -> i64 {

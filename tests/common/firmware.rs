@@ -1,18 +1,20 @@
-//! Firmware tests: what is installed, building, running under QEMU, and what symbols may be in an image.
+//! What the tests of firmware share: building it, running it under QEMU, reading its image.
+//!
+//! What is not installed (a target, QEMU) is skipped with a message, or fails where `REQUIRE_FIRMWARE=1`.
+#![allow(dead_code, reason = "each test uses its part")]
 
-use object::{Object, ObjectSymbol};
+use object::{Object, ObjectSection, ObjectSymbol, SectionFlags, SectionKind};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 pub(crate) const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 /// How long a firmware may run before it is killed; it takes seconds at most.
-const WATCHDOG: Duration = Duration::from_secs(60);
-
-/// The four targets.
-pub(crate) const TARGETS: [&str; 4] =
-    ["thumbv6m-none-eabi", "thumbv7m-none-eabi", "thumbv7em-none-eabihf", "riscv32imc-unknown-none-elf"];
+pub(crate) const WATCHDOG: Duration = Duration::from_secs(60);
+/// Held while a build runs.
+static BUILDS: Mutex<()> = Mutex::new(());
 
 /// Says on the real standard error, which the test harness does not capture, that something is not checked.
 pub(crate) fn skip(target: &str, missing: &str) {
@@ -28,20 +30,50 @@ pub(crate) fn target_is_installed(target: &str) -> bool {
     output.is_ok_and(|o| o.status.success() && Path::new(String::from_utf8_lossy(&o.stdout).trim()).is_dir())
 }
 
-/// Runs `cargo build --release` for one target and returns the folder with the results.
-pub(crate) fn cargo_build(target: &str, what: &[&str]) -> PathBuf {
-    cargo_build_all(&[target], "firmware", what).join(target).join("release")
+/// Whether a program can be started.
+pub(crate) fn program_is_installed(program: &str) -> bool {
+    Command::new(program).arg("--version").output().is_ok()
 }
 
-/// Runs `cargo build --release` for some targets in a target directory of its own (the outer cargo may hold the lock of
-/// the usual one) and returns that directory.
+/// Runs `cargo build --release` and returns the folder with the results.
+pub(crate) fn cargo_build(target: &str, what: &[&str]) -> PathBuf {
+    cargo("build", target, what, &[])
+}
+
+/// Runs `cargo build` or `cargo rustc` for a target with variables of the environment, in a target directory of its own
+/// (the outer cargo may hold the lock of the usual one), and returns the folder with the results.
+pub(crate) fn cargo(command: &str, target: &str, what: &[&str], environment: &[(&str, &str)]) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("firmware");
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.current_dir(ROOT).args([command, "--release", "--locked", "--quiet", "--target", target]);
+    cargo.arg("--target-dir").arg(&folder).args(what);
+    // These would replace the link arguments of .cargo/config.toml.
+    for variable in ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "CARGO_BUILD_RUSTFLAGS", "CARGO_BUILD_TARGET"] {
+        cargo.env_remove(variable);
+    }
+    // One at a time: the builds for all targets share the procedural macros and their folder.
+    let one = BUILDS.lock();
+    // The same filter of the log for all, or `defmt` would be built anew each time.
+    cargo.env("DEFMT_LOG", "trace").envs(environment.iter().copied());
+    let output = cargo.output().unwrap();
+    drop(one);
+    let said = String::from_utf8_lossy(&output.stderr);
+    let error = said.find("error").unwrap_or(0); // after warnings
+    assert!(output.status.success(), "{target} {what:?}:\n{}", &said[error..]);
+    folder.join(target).join("release")
+}
+
+/// The four targets.
+pub(crate) const TARGETS: [&str; 4] =
+    ["thumbv6m-none-eabi", "thumbv7m-none-eabi", "thumbv7em-none-eabihf", "riscv32imc-unknown-none-elf"];
+
+/// Runs `cargo build --release` for some targets at once, in the target directory of this name; returns it.
 pub(crate) fn cargo_build_all(targets: &[&str], folder: &str, what: &[&str]) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(ROOT).args(["build", "--release", "--locked", "--quiet"]);
     cargo.args(targets.iter().flat_map(|target| ["--target", target]));
     cargo.args(what).arg("--target-dir").arg(&folder);
-    // These would replace the link arguments of .cargo/config.toml.
     for variable in ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "CARGO_BUILD_RUSTFLAGS", "CARGO_BUILD_TARGET"] {
         cargo.env_remove(variable);
     }
@@ -51,6 +83,11 @@ pub(crate) fn cargo_build_all(targets: &[&str], folder: &str, what: &[&str]) -> 
     let output = cargo.output().unwrap();
     assert!(output.status.success(), "{targets:?} {what:?}:\n{}", String::from_utf8_lossy(&output.stderr));
     folder
+}
+
+/// What `cargo run` starts a target's firmware by.
+pub(crate) fn runner_of(target: &str) -> Vec<String> {
+    runner(&std::fs::read_to_string(Path::new(ROOT).join(".cargo/config.toml")).unwrap(), target)
 }
 
 /// The words of `runner = "…"` in `[target.NAME]`: what `cargo run` uses.
@@ -63,6 +100,11 @@ pub(crate) fn runner(config: &str, target: &str) -> Vec<String> {
 
 /// What the firmware prints. Fails when it does not end well in time.
 pub(crate) fn run(runner: &[String], image: &Path) -> String {
+    String::from_utf8_lossy(&run_bytes(runner, image)).into_owned()
+}
+
+/// The bytes that the firmware puts out. Fails when it does not end well in time.
+pub(crate) fn run_bytes(runner: &[String], image: &Path) -> Vec<u8> {
     let mut qemu = Command::new(&runner[0]);
     qemu.args(&runner[1..]).arg(image).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = qemu.spawn().unwrap();
@@ -79,15 +121,16 @@ pub(crate) fn run(runner: &[String], image: &Path) -> String {
         }
     };
     let (out, err) = (out.join().unwrap(), err.join().unwrap());
-    assert!(status.success(), "{status}; printed {out:?}, QEMU says {err}");
+    let (printed, said) = (String::from_utf8_lossy(&out), String::from_utf8_lossy(&err));
+    assert!(status.success(), "{status}; printed {printed:?}, QEMU says {said}");
     out
 }
 
-fn gather(mut pipe: impl Read + Send + 'static) -> std::thread::JoinHandle<String> {
+pub(crate) fn gather(mut pipe: impl Read + Send + 'static) -> std::thread::JoinHandle<Vec<u8>> {
     std::thread::spawn(move || {
         let mut bytes = Vec::new();
         pipe.read_to_end(&mut bytes).unwrap();
-        String::from_utf8_lossy(&bytes).into_owned()
+        bytes
     })
 }
 
@@ -95,6 +138,25 @@ fn gather(mut pipe: impl Read + Send + 'static) -> std::thread::JoinHandle<Strin
 pub(crate) fn symbols(elf: &[u8]) -> Vec<String> {
     let file = object::File::parse(elf).unwrap();
     file.symbols().filter_map(|symbol| symbol.name().ok().map(String::from)).collect()
+}
+
+/// Bytes of flash and of static RAM of an ELF file: code and constants with the start values of data; data and what
+/// starts as zero or undefined.
+pub(crate) fn sizes(elf: &[u8]) -> (u64, u64) {
+    const WRITE: u64 = 1;
+    const ALLOC: u64 = 2;
+    let file = object::File::parse(elf).unwrap();
+    let (mut flash, mut ram) = (0, 0);
+    for section in file.sections() {
+        let SectionFlags::Elf { sh_flags } = section.flags() else { panic!("not an ELF file") };
+        if sh_flags & ALLOC != 0 && section.kind() != SectionKind::UninitializedData {
+            flash += section.size();
+        }
+        if sh_flags & (ALLOC | WRITE) == ALLOC | WRITE {
+            ram += section.size();
+        }
+    }
+    (flash, ram)
 }
 
 /// Why a symbol may not be in a firmware; `None` for one that may. The panic handler alone is no offence: it is
@@ -114,7 +176,7 @@ pub(crate) fn offence(name: &str) -> Option<&'static str> {
 }
 
 /// The run-time ABI of ARM (`__aeabi_dadd`, `__aeabi_ui2f`, …) or of GCC (`__adddf3`, `__floatunsisf`, …).
-fn is_soft_float(name: &str) -> bool {
+pub(crate) fn is_soft_float(name: &str) -> bool {
     const OPERATIONS: [&str; 19] = [
         "add", "sub", "mul", "div", "neg", "eq", "ne", "lt", "le", "gt", "ge", "cmp", "unord", "powi", "fix", "fixuns",
         "float", "floatun", "extend",

@@ -128,6 +128,7 @@ fn methods(body: &[TokenTree], name: &str, only_public: bool, out: &mut Names) {
     for (at, token) in body.iter().enumerate() {
         match token.to_string().replace(' ', "").as_str() {
             "pub" => public = is_public(body, at),
+            ";" => (public, skipped) = (false, false),
             attribute if attribute.starts_with("[cfg(test") || attribute == "[cfg(feature=\"std\")]" => skipped = true,
             "fn" => {
                 if public || !only_public {

@@ -1,5 +1,7 @@
 //! Exact and rounded subdivision, and the bounds.
 
+pub(super) mod mesh;
+
 use super::{Digest, Sum, data, hide};
 use embedded_surfaces::num::{I16F16, I32F32, Word};
 use embedded_surfaces::patch::{

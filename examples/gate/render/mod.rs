@@ -1,5 +1,7 @@
 //! Scenes in every style and shape, whole and in bands.
 
+pub(super) mod grid;
+
 use super::{Digest, Sum, data, hide};
 use embedded_surfaces::forward::LatticeError;
 use embedded_surfaces::patch::{Surface, SurfaceNet};

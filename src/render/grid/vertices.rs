@@ -1,0 +1,150 @@
+//! The vertices of a patch's grid, two rows at a time.
+
+use super::super::depth::DepthWindow;
+use super::super::light::short;
+use super::super::style::Style;
+use super::level_of;
+use crate::forward::{Form, Fraction, Site, Visit};
+
+/// Segments of a row that are walked at once. A longer row is cut into strips, each a walk of its own.
+pub(super) const SEGMENTS: usize = 32;
+
+/// A row of vertices; what lies behind those of the walk is old.
+pub(super) type Row = [Vertex; SEGMENTS + 1];
+
+/// Rows j − 1 and j: row j stands at j mod 2.
+pub(super) type Rows = TwoRows;
+
+/// Two rows of vertices.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TwoRows(pub(super) [Row; 2]);
+
+impl TwoRows {
+    pub(super) fn new() -> Self {
+        Self([[Vertex::NONE; SEGMENTS + 1]; 2])
+    }
+}
+
+/// Which side of a patch the light reaches at a vertex; the other one has the ambient level.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Lit {
+    /// Not known yet: computed when a facet asks.
+    Unknown,
+    /// The side to which S_r × S_s points.
+    Along,
+    /// The other side.
+    Against,
+    /// The level does not depend on the side.
+    Both,
+}
+
+/// A vertex of a grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Vertex {
+    /// ⌊256·x⌋ and ⌊256·y⌋ of the exact point.
+    pub(super) x: i32,
+    pub(super) y: i32,
+    /// The depth of ⌊256·z⌋, with room on both sides.
+    pub(super) depth: u16,
+    /// The level of the side that is lit.
+    pub(super) level: u8,
+    pub(super) lit: Lit,
+    /// Directions of S_r and S_s, in 14 bits each.
+    pub(super) tangents: [[i16; 3]; 2],
+}
+
+impl Vertex {
+    const NONE: Self = Self { x: 0, y: 0, depth: 0, level: 0, lit: Lit::Unknown, tangents: [[0; 3]; 2] };
+}
+
+/// Room at both ends of the depths, 1/64 of the range: what a plane through a facet may err.
+const ROOM: u16 = 512;
+
+/// A depth of at most [`DepthWindow::LARGEST`] with room on both sides.
+pub(super) fn with_room(depth: u16) -> u16 {
+    ROOM + depth - (depth >> 5)
+}
+
+/// What is done with a row of vertices and the one before it.
+pub(super) trait RowSink {
+    /// Row `j` is complete, with `count` vertices of the strip.
+    fn row(&mut self, rows: &mut Rows, j: u32, count: usize);
+}
+
+/// Collects rows of vertices on a walk; with tangents in every style, so that one copy of the walks serves all.
+pub(super) struct Collector<'v> {
+    pub(super) rows: &'v mut Rows,
+    pub(super) sink: &'v mut dyn RowSink,
+    pub(super) style: Style,
+    pub(super) window: DepthWindow,
+    pub(super) fraction: Fraction,
+    pub(super) form: &'v Form<'v>,
+    /// The first and the last column of the strip.
+    pub(super) columns: (u32, u32),
+}
+
+impl Collector<'_> {
+    /// The level where it does not depend on a normal.
+    fn level(&self, depth: u16) -> (u8, Lit) {
+        if self.style.needs_normals() {
+            (0, Lit::Unknown)
+        } else {
+            (level_of(self.style, self.window, depth), Lit::Both)
+        }
+    }
+
+    /// Directions of S_r and S_s; of what grows from one that vanishes.
+    #[inline(always)]
+    fn tangents<S: Site>(&self, at: &S) -> [[i16; 3]; 2] {
+        let tangents = at.tangents().map(short);
+        if tangents.contains(&[0; 3]) { self.limit(tangents, at) } else { tangents }
+    }
+
+    /// Next to the side r = 0, S_s grows as r·S_rs; next to r = 1 as −(1 − r)·S_rs; S_r likewise.
+    #[cold]
+    #[inline(never)]
+    fn limit<S: Site>(&self, [r, s]: [[i16; 3]; 2], at: &S) -> [[i16; 3]; 2] {
+        let twist = at.twist();
+        let from = |start: bool| short(if start { twist } else { twist.map(|c| -c) });
+        match (r == [0; 3], s == [0; 3]) {
+            (true, false) => [from(at.j() == 0), s],
+            (false, true) => [r, from(at.i() == 0)],
+            _ => [r, s],
+        }
+    }
+
+    #[inline(never)]
+    fn end_row(&mut self, i: u32, j: u32) {
+        self.sink.row(self.rows, j, (i - self.columns.0) as usize + 1);
+    }
+}
+
+impl Visit for Collector<'_> {
+    const TANGENTS: bool = true;
+
+    #[inline(always)]
+    fn point<S: Site>(mut self, at: &S) -> Self {
+        let (i, j) = (at.i(), at.j());
+        let (first, last) = self.columns;
+        if i < first || i > last {
+            return self;
+        }
+        let depth = self.window.depth_of_256(at.floor(2, &self.fraction));
+        let (level, lit) = self.level(depth);
+        let vertex = Vertex {
+            x: at.floor(0, &self.fraction),
+            y: at.floor(1, &self.fraction),
+            depth: with_room(depth),
+            level,
+            lit,
+            tangents: self.tangents(at),
+        };
+        if let Some(slot) = self.rows.0[(j & 1) as usize].get_mut((i - first) as usize) {
+            *slot = vertex;
+        }
+        if i == last.min(self.form.last_in_row(j)) {
+            self.end_row(i, j);
+        }
+        self
+    }
+}
