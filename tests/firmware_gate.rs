@@ -64,7 +64,7 @@ fn check(opt_level: &str, features: &str) {
         what.extend(["--config".into(), format!("target.{target}.rustflags={flags}")]);
     }
     let what: Vec<_> = what.iter().map(String::as_str).collect();
-    let folder = cargo_build_all(&targets, &format!("gate-{opt_level}"), &what);
+    let folder = cargo_build_all(&targets, &format!("gate-{opt_level}-{features}"), &what);
     for target in targets {
         let path = folder.join(target).join("release/examples/fw_gate");
         let elf = std::fs::read(&path).unwrap();
