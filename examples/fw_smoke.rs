@@ -5,6 +5,9 @@
 //! two and reads the image's symbols: no panic, no soft float, no allocator.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
+#[path = "board/run.rs"]
+mod run;
+
 use embedded_surfaces::const_net;
 use embedded_surfaces::forward::{Lattice, LatticePoint, Steps};
 use embedded_surfaces::patch::{BicubicPatch, Surface};
@@ -46,72 +49,5 @@ pub(crate) fn report(out: &mut impl core::fmt::Write) -> core::fmt::Result {
 
 #[cfg(not(target_os = "none"))]
 fn main() {
-    let mut line = String::new();
-    match report(&mut line) {
-        Ok(()) => print!("{line}"),
-        Err(_) => std::process::exit(1),
-    }
-}
-
-/// Output by semihosting.
-#[cfg(all(target_os = "none", target_arch = "arm"))]
-mod target {
-    use cortex_m as _; // the critical section of `hprint!`
-    use cortex_m_semihosting::{debug, hio, hprintln};
-
-    #[cortex_m_rt::entry]
-    fn main() -> ! {
-        let done = hio::hstdout().is_ok_and(|mut out| super::report(&mut out).is_ok());
-        if !done {
-            hprintln!("fw_smoke: the lattice was refused");
-        }
-        leave(done)
-    }
-
-    #[panic_handler]
-    fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
-        leave(false)
-    }
-
-    fn leave(done: bool) -> ! {
-        debug::exit(if done { debug::EXIT_SUCCESS } else { debug::EXIT_FAILURE });
-        loop {
-            cortex_m::asm::wfi();
-        }
-    }
-}
-
-/// Output by the UART of QEMU's `virt` machine, exit by its test device.
-#[cfg(all(target_os = "none", target_arch = "riscv32"))]
-mod target {
-    const UART: *mut u8 = 0x1000_0000 as *mut u8;
-    const TEST_DEVICE: *mut u32 = 0x10_0000 as *mut u32;
-
-    struct Uart;
-
-    impl core::fmt::Write for Uart {
-        fn write_str(&mut self, text: &str) -> core::fmt::Result {
-            for byte in text.bytes() {
-                // SAFETY: the transmit register of the 16550 at this address; QEMU's is always ready.
-                unsafe { UART.write_volatile(byte) };
-            }
-            Ok(())
-        }
-    }
-
-    #[riscv_rt::entry]
-    fn main() -> ! {
-        leave(super::report(&mut Uart).is_ok())
-    }
-
-    #[panic_handler]
-    fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
-        leave(false)
-    }
-
-    fn leave(done: bool) -> ! {
-        // SAFETY: the test device: 0x5555 ends QEMU with status 0, (code << 16) | 0x3333 with that code.
-        unsafe { TEST_DEVICE.write_volatile(if done { 0x5555 } else { 1 << 16 | 0x3333 }) };
-        loop {}
-    }
+    run::on_host();
 }

@@ -56,7 +56,9 @@ impl<W: Word, const R: usize> Site for At<'_, W, R> {
         let t = row.t.map(|t| to_i64(t[0] >> shift));
         let along = |slope_t: [W; 3], slope_d: W| {
             let slopes = narrow([slope_t[0], slope_t[1], slope_t[2], slope_d]);
-            core::array::from_fn(|axis| t[axis] * slopes[3] - slopes[axis] * d)
+            let mut tangent = t;
+            tangent.iter_mut().zip(slopes).for_each(|(t, slope)| *t = *t * slopes[3] - slope * d);
+            tangent
         };
         [
             along(row.t.map(|t| self.weights.along_row(&t)), self.weights.along_row(&row.d)),
@@ -252,7 +254,7 @@ impl<W: Word, const R: usize> QuotientWalker<W, R> {
         self.row.t = self.t.map(|t| t[0]);
         if TANGENTS {
             self.row.across_d = self.weights.across(&self.d);
-            self.row.across_t = core::array::from_fn(|axis| self.weights.across(&self.t[axis]));
+            self.row.across_t = self.t.each_ref().map(|t| self.weights.across(t));
         }
     }
 

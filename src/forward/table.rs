@@ -26,24 +26,30 @@ pub(crate) fn difference_table<W: Word, const R: usize>(
     let power_r: [W; R] = powers(steps_r);
     let power_s: [W; R] = powers(if form.kind == Kind::Triangle { 1 } else { steps_s });
     t.iter_mut().for_each(|row| row.fill(W::ZERO));
-    for (b, row) in t[..=h].iter_mut().enumerate() {
-        let row = &mut row[..=row_end(b)];
+    for (b, row) in t.iter_mut().enumerate().take(h + 1) {
+        let row = up_to(row, row_end(b));
         for (a, entry) in row.iter_mut().enumerate() {
             *entry = W::truncate(coefficient(a, b).into());
         }
         differences(row);
     }
-    each_column(t, m, |a, column| differences(&mut column[..=column_end(a)]));
-    for (b, (row, power)) in t[..=h].iter_mut().zip(power_s[..=h].iter().rev()).enumerate() {
+    each_column(t, m, |a, column| differences(up_to(column, column_end(a))));
+    let by_s = BINOMIAL[h].into_iter().zip(power_s.iter().take(h + 1).rev());
+    for (b, (row, (choices, power))) in t.iter_mut().zip(by_s).enumerate() {
         let end = row_end(b);
-        let row = &mut row[..=end];
-        let by_s = power.wrapping_mul_i64(BINOMIAL[h][b].into());
-        for ((entry, choices), power) in row.iter_mut().zip(BINOMIAL[end]).zip(power_r[..=end].iter().rev()) {
+        let row = up_to(row, end);
+        let by_s = power.wrapping_mul_i64(choices.into());
+        for ((entry, choices), power) in row.iter_mut().zip(BINOMIAL[end]).zip(power_r.iter().take(end + 1).rev()) {
             *entry = entry.wrapping_mul_i64(choices.into()).wrapping_times(*power).wrapping_times(by_s);
         }
         to_newton(row);
     }
-    each_column(t, m, |a, column| to_newton(&mut column[..=column_end(a)]));
+    each_column(t, m, |a, column| to_newton(up_to(column, column_end(a))));
+}
+
+/// The entries up to `last`; none beyond the room.
+fn up_to<W, const R: usize>(entries: &mut [W; R], last: usize) -> &mut [W] {
+    entries.get_mut(..=last).unwrap_or_default()
 }
 
 /// Moves a table one step along r: Δ^a ← Δ^a + Δ^(a+1).
@@ -104,8 +110,15 @@ fn powers<W: Word, const R: usize>(n: u32) -> [W; R] {
 /// Applies `change` to the columns up to `last`.
 #[inline(always)]
 fn each_column<W: Word, const R: usize>(t: &mut Table<W, R>, last: usize, change: impl Fn(usize, &mut [W; R])) {
-    for a in 0..last.min(R - 1) + 1 {
-        let mut column = core::array::from_fn(|b| t[b][a]);
+    for a in 0..R {
+        if a > last {
+            return;
+        }
+        // Not by `from_fn`: at opt-level s its closure would check the index.
+        let mut column = [W::ZERO; R];
+        for (entry, row) in column.iter_mut().zip(t.iter()) {
+            *entry = row[a];
+        }
         change(a, &mut column);
         for (row, entry) in t.iter_mut().zip(column) {
             row[a] = entry;

@@ -51,9 +51,13 @@ impl Weights {
 
     /// L_s times the derivative across the rows, as differences along the row.
     pub(crate) fn across<W: Word, const R: usize>(&self, table: &[[W; R]; R]) -> [W; R] {
-        core::array::from_fn(|a| {
-            (1..R).fold(W::ZERO, |sum, b| sum.wrapping_plus(table[b][a].wrapping_mul_i64(self.s[b].into())))
-        })
+        let mut sums = [W::ZERO; R];
+        for (row, weight) in table.iter().zip(self.s).skip(1) {
+            for (sum, entry) in sums.iter_mut().zip(row) {
+                *sum = sum.wrapping_plus(entry.wrapping_mul_i64(weight.into()));
+            }
+        }
+        sums
     }
 }
 

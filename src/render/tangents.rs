@@ -211,8 +211,12 @@ impl<'a> Tangents<'a> {
                 before = here;
             }
         }
-        for a in 0..m.min(MAX_DEGREE) {
-            along[a] = core::array::from_fn(|axis| along[a + 1][axis] - along[a][axis]);
+        for a in 0..MAX_DEGREE {
+            if a >= m {
+                break;
+            }
+            let next = along[a + 1];
+            along[a].iter_mut().zip(next).for_each(|(here, next)| *here = next - *here);
         }
         let (m, n) = (m.min(ORDER), (m + 1).min(ORDER));
         shorten(&along[..m], &mut self.by_r);
