@@ -6,7 +6,7 @@ use embedded_surfaces::geometry::View;
 use embedded_surfaces::graphics::Material;
 use embedded_surfaces::num::I16F16;
 use embedded_surfaces::patch::{BicubicPatch, Tensor};
-use embedded_surfaces::render::{Area, Cull, Fill, Frame, Light, Scene, Style};
+use embedded_surfaces::render::{Area, Cull, Frame, Light, Scene, Style};
 use embedded_surfaces::subdivide::PatchTopology;
 
 pub(crate) const AREA: Area = Area { x: 0, y: 0, width: 320, height: 240 };
@@ -45,7 +45,7 @@ pub(crate) fn draw(grid: bool, buffers: &mut Buffers, mut row: impl FnMut(&[Rgb5
     let scene = if grid {
         Scene::grid(patches, &EDGES, I16F16::ONE, light, style).ok()?
     } else {
-        Scene::new(patches, light, style).ok()?.with_topology(&EDGES).ok()?.with_fill(Fill::Exact).ok()?
+        Scene::new(patches, light, style).ok()?.with_topology(&EDGES).ok()?
     };
     let paint = Material { colour: Rgb565::CSS_BURLY_WOOD };
     let mut frame = Frame::new(scene.with_cull(Cull::Back), &paint, Rgb565::BLACK, AREA, ROWS).ok()?;
