@@ -135,7 +135,7 @@ fn a_picture_is_written_and_counted() {
     });
     let png = Path::new(env!("CARGO_TARGET_TMPDIR")).join("square.png");
     let output = golden("render", &file("square", &case.to_string()), &["-o", png.to_str().unwrap()]);
-    let expected = json!({"status": "ok", "points": 162, "pixels": 64, "pieces": 1, "splits": 0, "missed": 0});
+    let expected = json!({"status": "ok", "points": 81, "pixels": 64, "pieces": 2, "splits": 0, "missed": 0});
     assert_eq!(answer(&output), expected);
     assert!(std::fs::read(&png).unwrap().starts_with(b"\x89PNG"));
 }
@@ -210,7 +210,11 @@ fn what_is_wrong_exits_with_2_and_names_the_field() {
     };
     let cases = [
         ("lattice", "{\"patch\": {\"kind\": \"tri\", \"degree\": 1, \"ctrl\": [[0, NaN, 0]]}}".into(), "patch.ctrl[0]"),
-        ("lattice", "{\"patch\": [1, 1e999]}".into(), "patch[1]"),
+        (
+            "lattice",
+            "{\"steps\": 1, \"patch\": {\"kind\": \"tri\", \"degree\": 1, \"ctrl\": [[0, 1e999, 0], [0, 0, 0], [1, 1, 1]]}}".into(),
+            "patch.ctrl[0][1]",
+        ),
         ("lattice", "{\"patch\": {} trailing".into(), "the case: expected"),
         ("lattice", "[]".into(), "the case"),
         ("lattice", "{}".into(), "patch"),

@@ -70,6 +70,22 @@ pub struct Mesh<'b> {
     triangles: &'b [[u32; 3]],
 }
 
+#[cfg(feature = "defmt")]
+impl defmt::Format for MeshBuffers<'_> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let (vertices, triangles, index) = (self.vertices.len(), self.triangles.len(), self.index.len());
+        defmt::write!(f, "MeshBuffers {{ vertices: {}, triangles: {}, index: {} }}", vertices, triangles, index);
+    }
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for Mesh<'_> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let (vertices, triangles) = (self.vertices.len(), self.triangles.len());
+        defmt::write!(f, "Mesh {{ {} vertices, {} triangles }}", vertices, triangles);
+    }
+}
+
 impl<'b> Mesh<'b> {
     /// The vertices, in the order in which triangles first have them.
     #[must_use]

@@ -57,6 +57,14 @@ pub struct Tessellation<'a, S> {
     zips: [Option<Zip>; 2],
 }
 
+#[cfg(feature = "defmt")]
+impl<S> defmt::Format for Tessellation<'_, S> {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let (patches, tolerance) = (self.patches.len(), self.tolerance);
+        defmt::write!(f, "Tessellation {{ {} patches, tolerance: {}/2^16 }}", patches, tolerance);
+    }
+}
+
 impl<S> Clone for Tessellation<'_, S> {
     fn clone(&self) -> Self {
         Self { ..*self }
