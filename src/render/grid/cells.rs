@@ -3,7 +3,7 @@
 use super::super::light::{Light, normal_of, short};
 use super::super::pen::tangents_inside;
 use super::super::style::Style;
-use super::vertices::{Lit, Row, RowSink, Rows, Vertex};
+use super::vertices::{Lit, Row, RowSink, Rows, Tangents, Vertex};
 use super::{FRACTION_BITS, Output, Quad};
 use crate::forward::Form;
 use crate::patch::SurfaceNet;
@@ -20,9 +20,9 @@ pub(in crate::render) struct Lighting<'a> {
 impl Lighting<'_> {
     /// The level of the side that the light reaches, and which one it is.
     #[inline(never)]
-    fn shade(&self, vertex: &mut Vertex, i: u32, j: u32) {
+    fn shade(&self, vertex: &mut Vertex, tangents: [[i16; 3]; 2], i: u32, j: u32) {
         let inside = || normal_of(tangents_inside(self.net, self.form, i, j)?.map(short));
-        let normal = normal_of(vertex.tangents).or_else(inside).unwrap_or([0, 0, -1]);
+        let normal = normal_of(tangents).or_else(inside).unwrap_or([0, 0, -1]);
         let along = normal.iter().zip(self.light.direction()).map(|(n, l)| n * l).sum::<i32>() >= 0;
         let normal = if along { normal } else { normal.map(|n| -n) };
         vertex.level = match self.style {
@@ -30,19 +30,6 @@ impl Lighting<'_> {
             _ => self.light.level(normal),
         };
         vertex.lit = if along { Lit::Along } else { Lit::Against };
-    }
-
-    /// The level of a vertex on the side that is seen.
-    #[inline(always)]
-    fn level(&self, vertex: &mut Vertex, along: bool, i: u32, j: u32) -> u8 {
-        if vertex.lit == Lit::Unknown {
-            self.shade(vertex, i, j);
-        }
-        match vertex.lit {
-            Lit::Against if along => self.light.ambient(),
-            Lit::Along if !along => self.light.ambient(),
-            _ => vertex.level,
-        }
     }
 }
 
@@ -85,10 +72,10 @@ pub(super) struct Cells<'a, O> {
     pub(super) facets: u64,
 }
 
-/// Twice the signed area of three vertices, exact: they are less than 2^15 apart.
+/// Twice the signed area between two sides that leave a vertex.
 #[inline(always)]
-fn area(a: &Vertex, b: &Vertex, c: &Vertex) -> i32 {
-    (b.x - a.x).wrapping_mul(c.y - a.y).wrapping_sub((b.y - a.y).wrapping_mul(c.x - a.x))
+fn cross(p: [i32; 2], q: [i32; 2]) -> i32 {
+    p[0].wrapping_mul(q[1]).wrapping_sub(p[1].wrapping_mul(q[0]))
 }
 
 /// Whether a pixel centre of `from .. to` lies between the least and the greatest of four coordinates.
@@ -102,86 +89,92 @@ fn has_centres([a, b, c, d]: [i32; 4], from: i32, to: i32) -> bool {
 /// How far a plane may be from the corners of a quad: 4 times 12 levels, 4 times 1/128 of the depths.
 const WARP: (i32, i32) = (48, 1024);
 
-/// Two rows and the cell between them.
+/// A cell between two rows.
 struct Cell<'r> {
-    above: &'r mut Row,
-    below: &'r mut Row,
-    k: usize,
-    j: u32,
-}
-
-/// A corner of a cell, in the order in which they go round.
-#[derive(Clone, Copy)]
-enum Corner {
-    A,
-    B,
-    C,
-    D,
-}
-
-impl Cell<'_> {
-    #[inline(always)]
-    fn vertex(&mut self, corner: Corner) -> Option<(&mut Vertex, usize, u32)> {
-        let (row, column, j) = match corner {
-            Corner::A => (&mut *self.above, self.k, self.j - 1),
-            Corner::B => (&mut *self.above, self.k + 1, self.j - 1),
-            Corner::C => (&mut *self.below, self.k + 1, self.j),
-            Corner::D => (&mut *self.below, self.k, self.j),
-        };
-        Some((row.get_mut(column)?, column, j))
-    }
+    /// (i, j−1), (i+1, j−1), (i+1, j), (i, j); of a triangle the third is not used.
+    corners: [&'r mut Vertex; 4],
+    tangents: &'r dyn Tangents,
+    /// i and j.
+    at: [u32; 2],
 }
 
 impl<O: Output> Cells<'_, O> {
-    /// The cell with the corners (i, j−1), (i+1, j−1), (i+1, j), (i, j); a triangle lacks the third.
-    fn cell(&mut self, mut cell: Cell<'_>, is_triangle: bool) {
-        let (above, below) = (cell.above.get(cell.k..cell.k + 2), cell.below.get(cell.k..cell.k + 2));
-        let (Some([a, b]), Some([d, c])) = (above, below) else { return };
-        let c = if is_triangle { d } else { c };
-        let [x_from, x_to, y_from, y_to] = self.window;
-        if !has_centres([a.y, b.y, c.y, d.y], y_from, y_to) || !has_centres([a.x, b.x, c.x, d.x], x_from, x_to) {
-            return;
+    /// The level of a corner on the side that is seen.
+    #[inline(always)]
+    fn level(&self, cell: &mut Cell<'_>, corner: usize, along: bool) -> u8 {
+        let vertex = &mut *cell.corners[corner & 3];
+        if vertex.lit == Lit::Unknown {
+            let i = cell.at[0] + u32::from(corner == 1 || corner == 2);
+            let j = cell.at[1] - u32::from(corner < 2);
+            self.lighting.shade(vertex, cell.tangents.tangents(i, j), i, j);
         }
-        let (abc, acd) = (area(a, b, c), area(a, c, d));
+        match vertex.lit {
+            Lit::Against if along => self.lighting.light.ambient(),
+            Lit::Along if !along => self.lighting.light.ambient(),
+            _ => vertex.level,
+        }
+    }
+
+    #[inline(always)]
+    fn cell(&mut self, mut cell: Cell<'_>, is_triangle: bool) {
+        let [a, b, c, d] = &cell.corners;
+        // All products are exact: corners are less than 2^15 apart.
+        let from_a = |v: &Vertex| [v.x - a.x, v.y - a.y];
+        let (ab, ac, ad) = (from_a(b), from_a(c), from_a(d));
+        let (abc, acd) = (cross(ab, ac), cross(ac, ad));
         let hidden = match self.side {
-            Side::Both => (abc | acd) == 0 && area(a, b, d) == 0,
+            Side::Both => false,
             Side::Along => abc >= 0 && acd >= 0,
             Side::Against => abc <= 0 && acd <= 0,
         };
         if hidden {
             return;
         }
-        let (abd, bcd) = (area(a, b, d), area(b, c, d));
-        let third = if is_triangle { Corner::D } else { Corner::C };
+        let abd = cross(ab, ad);
+        let bcd = abc.wrapping_add(acd).wrapping_sub(abd);
+        let [x_from, x_to, y_from, y_to] = self.window;
+        if (abc | acd | abd) == 0
+            || !has_centres([a.y, b.y, c.y, d.y], y_from, y_to)
+            || !has_centres([a.x, b.x, c.x, d.x], x_from, x_to)
+        {
+            return;
+        }
         if (abc | acd | abd | bcd) >= 0 || (abc <= 0 && acd <= 0 && abd <= 0 && bcd <= 0) {
-            self.convex(&mut cell, abc < 0 || acd < 0, [Corner::A, Corner::B, third, Corner::D], !is_triangle);
+            let along = abc < 0 || acd < 0;
+            if is_triangle {
+                self.triangle(&mut cell, along, [0, 1, 3]);
+            } else {
+                self.convex(&mut cell, along);
+            }
         } else if (abc >= 0) != (acd >= 0) && (abd >= 0) == (bcd >= 0) {
             let along = abd < 0 || bcd < 0;
-            self.convex(&mut cell, along, [Corner::A, Corner::B, Corner::D, Corner::D], false);
-            self.convex(&mut cell, along, [Corner::B, Corner::C, Corner::D, Corner::D], false);
+            self.triangle(&mut cell, along, [0, 1, 3]);
+            self.triangle(&mut cell, along, [1, 2, 3]);
         } else {
-            self.convex(&mut cell, abc < 0, [Corner::A, Corner::B, Corner::C, Corner::C], false);
-            self.convex(&mut cell, acd < 0, [Corner::A, Corner::C, Corner::D, Corner::D], false);
+            self.triangle(&mut cell, abc < 0, [0, 1, 2]);
+            self.triangle(&mut cell, acd < 0, [0, 2, 3]);
         }
     }
 
-    /// A convex quad, or a triangle with its last corner twice.
-    fn convex(&mut self, cell: &mut Cell<'_>, along: bool, corners: [Corner; 4], is_quad: bool) {
-        if !self.side.shows(along) {
-            return;
-        }
-        let mut quad = Quad { x: [0; 4], y: [0; 4], depth: [0; 4], level: [0; 4], patch: self.patch };
-        for (k, corner) in corners.into_iter().enumerate() {
-            // Clockwise on the screen: the other way round where S_r × S_s looks at the viewer.
-            let k = if along { (4 - k) & 3 } else { k };
-            let Some((vertex, column, j)) = cell.vertex(corner) else { return };
-            quad.level[k] = self.lighting.level(vertex, along, self.first + column as u32, j);
-            (quad.x[k], quad.y[k], quad.depth[k]) = (vertex.x, vertex.y, vertex.depth);
-        }
-        let warp = |[a, b, c, d]: [i32; 4]| (a - b + c - d).abs();
-        let is_bent = |q: &Quad| warp(q.level.map(i32::from)) > WARP.0 || warp(q.depth.map(i32::from)) > WARP.1;
+    /// A convex cell.
+    #[inline(always)]
+    fn convex(&mut self, cell: &mut Cell<'_>, along: bool) {
+        let level = [0, 1, 2, 3].map(|k| self.level(cell, k, along));
+        let [a, b, c, d] = &cell.corners;
+        // Clockwise on the screen: the other way round where S_r × S_s looks at the viewer.
+        let (b, d, second, fourth) = if along { (d, b, level[3], level[1]) } else { (b, d, level[1], level[3]) };
+        let quad = Quad {
+            x: [a.x, b.x, c.x, d.x],
+            y: [a.y, b.y, c.y, d.y],
+            depth: [a.depth, b.depth, c.depth, d.depth],
+            level: [level[0], second, level[2], fourth],
+            patch: self.patch,
+        };
+        let warp = |a: i32, b: i32, c: i32, d: i32| (a - b + c - d).abs();
+        let of_levels = warp(level[0].into(), second.into(), level[2].into(), fourth.into());
+        let of_depths = warp(a.depth.into(), b.depth.into(), c.depth.into(), d.depth.into());
         self.facets += 1;
-        if is_quad && is_bent(&quad) {
+        if of_levels > WARP.0 || of_depths > WARP.1 {
             self.facets += 1;
             self.output.facet(&quad.corners([0, 1, 2, 2]));
             self.output.facet(&quad.corners([0, 2, 3, 3]));
@@ -189,23 +182,57 @@ impl<O: Output> Cells<'_, O> {
             self.output.facet(&quad);
         }
     }
+
+    /// A triangle of three corners, its last one twice.
+    #[cold]
+    #[inline(never)]
+    fn triangle(&mut self, cell: &mut Cell<'_>, along: bool, corners: [usize; 3]) {
+        if !self.side.shows(along) {
+            return;
+        }
+        let [a, b, c] = corners;
+        let order = if along { [a, c, c, b] } else { [a, b, c, c] };
+        let mut quad = Quad { x: [0; 4], y: [0; 4], depth: [0; 4], level: [0; 4], patch: self.patch };
+        for (k, corner) in order.into_iter().enumerate() {
+            quad.level[k] = self.level(cell, corner, along);
+            let vertex = &cell.corners[corner & 3];
+            (quad.x[k], quad.y[k], quad.depth[k]) = (vertex.x, vertex.y, vertex.depth);
+        }
+        self.facets += 1;
+        self.output.facet(&quad);
+    }
 }
 
 impl<O: Output> RowSink for Cells<'_, O> {
-    fn row(&mut self, rows: &mut Rows, j: u32, count: usize) {
+    fn row(&mut self, rows: &mut Rows, tangents: &dyn Tangents, j: u32, count: usize) {
         if j == 0 {
             return;
         }
         let [even, odd] = &mut rows.0;
         let (above, below) = if j & 1 == 1 { (even, odd) } else { (odd, even) };
         for k in 0..count.saturating_sub(1) {
-            self.cell(Cell { above, below, k, j }, false);
+            let at = [self.first + k as u32, j];
+            if let (Some([a, b]), Some([d, c])) = (above.get_mut(k..k + 2), below.get_mut(k..k + 2)) {
+                self.cell(Cell { corners: [a, b, c, d], tangents, at }, false);
+            }
         }
         // The row before is longer by one in a triangle, unless the strip ends first.
         let form = self.lighting.form;
         let last = self.first + count as u32 - 1;
         if form.last_in_row(j) == last && form.last_in_row(j - 1) > last && count <= super::SEGMENTS {
-            self.cell(Cell { above, below, k: count - 1, j }, true);
+            self.last(above, below, (tangents, j, count - 1));
+        }
+    }
+}
+
+impl<O: Output> Cells<'_, O> {
+    /// The triangle at the end of a row of a triangular patch, after column `k` of the strip.
+    #[cold]
+    #[inline(never)]
+    fn last(&mut self, above: &mut Row, below: &mut Row, (tangents, j, k): (&dyn Tangents, u32, usize)) {
+        if let (Some([a, b]), Some(d)) = (above.get_mut(k..k + 2), below.get_mut(k)) {
+            let mut c = *d;
+            self.cell(Cell { corners: [a, b, &mut c, d], tangents, at: [self.first + k as u32, j] }, true);
         }
     }
 }

@@ -39,7 +39,7 @@ use crate::forward::{Form, Fraction, LatticeError};
 use crate::patch::SurfaceNet;
 use bicubic::Bicubic;
 use cells::{Cells, Lighting, Side};
-use vertices::{Collector, Rows, SEGMENTS};
+use vertices::{Collector, Kept, Rows, SEGMENTS};
 
 /// Fraction bits of vertices on the screen.
 const FRACTION_BITS: u32 = 8;
@@ -139,8 +139,8 @@ fn general<O: Output>(
     while first < form.steps.0 {
         let columns = (first, (first + SEGMENTS as u32).min(form.steps.0));
         cells.first = first;
-        let (rows, sink) = (&mut *rows, &mut *cells);
-        plan.walk(Collector { rows, sink, style, window, fraction, form, columns });
+        let (rows, sink, kept) = (&mut *rows, &mut *cells, &mut Kept::new(first));
+        plan.walk(Collector { rows, kept, sink, style, window, fraction, form, columns });
         first = columns.1;
     }
 }
