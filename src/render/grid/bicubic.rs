@@ -9,6 +9,7 @@
 use super::super::depth::DepthWindow;
 use super::vertices::{Lit, RowSink, Rows, SEGMENTS, Tangents, Vertex, with_room};
 use crate::forward::Form;
+use crate::num::Factor;
 use crate::patch::SurfaceNet;
 
 /// n³ times a cubic at 0, 1, …, n, by differences; the second and the third are halved.
@@ -95,23 +96,21 @@ impl Exact {
 struct Cube {
     cube: u32,
     /// ⌊2^32/n³⌋, for n = 1 one less.
-    reciprocal: u32,
-}
-
-fn high(a: u32, b: u32) -> u32 {
-    ((u64::from(a) * u64::from(b)) >> 32) as u32
+    reciprocal: Factor,
 }
 
 impl Cube {
     fn of(n: u32) -> Self {
         let cube = n * n * n;
-        Self { cube, reciprocal: (1_u64 << 32).checked_div(cube.into()).unwrap_or(0).min(u32::MAX.into()) as u32 }
+        // 1 more than ⌊(2^32 − 1)/n³⌋ for powers of two alone.
+        let reciprocal = u32::MAX.checked_div(cube).unwrap_or(0) + u32::from(cube.is_power_of_two() && cube > 1);
+        Self { cube, reciprocal: Factor::new(reciprocal) }
     }
 
     /// ⌊a/n³⌋ for a < 2^32, or one less.
     #[inline(always)]
     fn near(self, a: u32) -> u32 {
-        high(a, self.reciprocal)
+        self.reciprocal.high(a)
     }
 
     /// ⌊256·x⌋ of an exact value.
@@ -190,24 +189,29 @@ impl<'a> Bicubic<'a> {
             if level.is_none() {
                 slope.across = across(&columns, n_r);
             }
-            let is_edge = j == 0 || j == n_s;
-            for axis in 0..3 {
-                let column = &columns[axis];
-                let control = [0, 1, 2, 3].map(|a| by_s.near(column[a].value as u32) as i32);
-                let [b1, b2, b3] = power(control);
+            let grid = Row { put: &put, by_r, by_s, fraction_bits: self.fraction_bits };
+            let mut control = [[0; 4]; 3];
+            for (axis, control) in control.iter_mut().enumerate() {
+                *control = [0, 1, 2, 3].map(|a| by_s.near(columns[axis][a].value as u32) as i32);
+                let [b1, b2, b3] = power(*control);
                 let n_b2 = n_r.wrapping_mul(b2);
                 slope.along[axis] = [n_r.wrapping_mul(n_r).wrapping_mul(b1), n_b2.wrapping_mul(2), b3.wrapping_mul(3)];
-                if is_edge {
-                    let end = if j == 0 { 0 } else { 3 };
-                    put.edge(axis, out, Exact::new(self.line(axis, end, 4), n_r), by_r);
-                } else {
-                    put.inside(axis, out, Cubic::of(control[0], [b1, b2, b3], n_r), by_r, self.fraction_bits);
-                }
-                if let [first, .., last] = out {
-                    put.vertex(axis, first, by_s.floor(&sides[0][axis]));
-                    put.vertex(axis, last, by_s.floor(&sides[1][axis]));
-                }
             }
+            if j == 0 || j == n_s {
+                let end = if j == 0 { 0 } else { 3 };
+                grid.edge::<0>(out, Exact::new(self.line(0, end, 4), n_r));
+                grid.edge::<1>(out, Exact::new(self.line(1, end, 4), n_r));
+                grid.edge::<2>(out, Exact::new(self.line(2, end, 4), n_r));
+            } else {
+                grid.inside::<0>(out, Cubic::new(control[0], n_r));
+                grid.inside::<1>(out, Cubic::new(control[1], n_r));
+                grid.inside::<2>(out, Cubic::new(control[2], n_r));
+            }
+            if let [first, .., last] = out {
+                grid.exact(first, &sides[0]);
+                grid.exact(last, &sides[1]);
+            }
+            put.levels(out);
             sink.row(rows, &slopes, j as u32, n_r as usize + 1);
             columns.as_flattened_mut().iter_mut().for_each(Cubic::step);
             sides.as_flattened_mut().iter_mut().for_each(Exact::step);
@@ -225,40 +229,63 @@ struct Put<'l> {
 impl Put<'_> {
     /// One coordinate of a vertex in 1/256 pixel from the origin.
     #[inline(always)]
-    fn vertex(&self, axis: usize, vertex: &mut Vertex, c: i32) {
-        let c = self.origin[axis] + c;
-        match axis {
+    fn vertex<const AXIS: usize>(&self, vertex: &mut Vertex, c: i32) {
+        let c = self.origin[AXIS] + c;
+        match AXIS {
             0 => vertex.x = c,
             1 => vertex.y = c,
-            _ => {
-                let depth = self.window.depth_of_256(c);
-                vertex.depth = with_room(depth);
-                (vertex.level, vertex.lit) = match self.level {
-                    Some(level) => (level(depth), Lit::Both),
-                    None => (0, Lit::Unknown),
-                };
-            }
+            _ => vertex.depth = self.window.depth_of_256(c),
         }
     }
 
+    /// Finishes a row whose depths are known: with room, and with levels where these are depths alone.
+    #[inline(always)]
+    fn levels(&self, row: &mut [Vertex]) {
+        for vertex in row {
+            (vertex.level, vertex.lit) = match self.level {
+                Some(level) => (level(vertex.depth), Lit::Both),
+                None => (0, Lit::Unknown),
+            };
+            vertex.depth = with_room(vertex.depth);
+        }
+    }
+}
+
+/// A row of the grid on its way to its vertices.
+struct Row<'p> {
+    put: &'p Put<'p>,
+    by_r: Cube,
+    by_s: Cube,
+    fraction_bits: u32,
+}
+
+impl Row<'_> {
     /// One coordinate of the vertices of a row.
     #[inline(always)]
-    fn inside(&self, axis: usize, row: &mut [Vertex], mut cubic: Cubic, by: Cube, fraction_bits: u32) {
+    fn inside<const AXIS: usize>(&self, row: &mut [Vertex], mut cubic: Cubic) {
         // 256·x of what is n³·2^F·x.
-        let shift = fraction_bits - 8;
+        let shift = self.fraction_bits - 8;
         for vertex in row {
-            self.vertex(axis, vertex, (by.near(cubic.value as u32) >> shift) as i32);
+            self.put.vertex::<AXIS>(vertex, (self.by_r.near(cubic.value as u32) >> (shift & 31)) as i32);
             cubic.step();
         }
     }
 
     /// One coordinate of the vertices of an edge.
     #[inline(always)]
-    fn edge(&self, axis: usize, row: &mut [Vertex], mut cubic: Exact, by: Cube) {
+    fn edge<const AXIS: usize>(&self, row: &mut [Vertex], mut cubic: Exact) {
         for vertex in row {
-            self.vertex(axis, vertex, by.floor(&cubic));
+            self.put.vertex::<AXIS>(vertex, self.by_r.floor(&cubic));
             cubic.step();
         }
+    }
+
+    /// The end of a row, on a side.
+    #[inline(always)]
+    fn exact(&self, vertex: &mut Vertex, [x, y, z]: &[Exact; 3]) {
+        self.put.vertex::<0>(vertex, self.by_s.floor(x));
+        self.put.vertex::<1>(vertex, self.by_s.floor(y));
+        self.put.vertex::<2>(vertex, self.by_s.floor(z));
     }
 }
 

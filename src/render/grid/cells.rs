@@ -23,11 +23,10 @@ impl Lighting<'_> {
     fn shade(&self, vertex: &mut Vertex, tangents: [[i16; 3]; 2], i: u32, j: u32) {
         let inside = || normal_of(tangents_inside(self.net, self.form, i, j)?.map(short));
         let normal = normal_of(tangents).or_else(inside).unwrap_or([0, 0, -1]);
-        let along = normal.iter().zip(self.light.direction()).map(|(n, l)| n * l).sum::<i32>() >= 0;
-        let normal = if along { normal } else { normal.map(|n| -n) };
+        let (level, along) = self.light.level_of_lit_side(normal);
         vertex.level = match self.style {
-            Style::Glossy(gloss) => self.light.glossy(normal, gloss),
-            _ => self.light.level(normal),
+            Style::Glossy(gloss) => self.light.glossy(if along { normal } else { normal.map(|n| -n) }, gloss),
+            _ => level,
         };
         vertex.lit = if along { Lit::Along } else { Lit::Against };
     }
@@ -50,6 +49,16 @@ impl Side {
         }
     }
 
+    /// Whether both triangles of a cell of these areas are hidden.
+    #[inline(always)]
+    fn hides(self, [abc, acd]: [i32; 2]) -> bool {
+        match self {
+            Self::Both => false,
+            Self::Along => abc >= 0 && acd >= 0,
+            Self::Against => abc <= 0 && acd <= 0,
+        }
+    }
+
     fn shows(self, along: bool) -> bool {
         match self {
             Self::Both => true,
@@ -67,15 +76,21 @@ pub(super) struct Cells<'a, O> {
     pub(super) output: &'a mut O,
     /// The output's.
     pub(super) window: [i32; 4],
+    /// Whether the patch may leave its columns.
+    pub(super) is_wide: bool,
     /// The first column of the strip.
     pub(super) first: u32,
-    pub(super) facets: u64,
+    pub(super) facets: u32,
 }
 
 /// Twice the signed area between two sides that leave a vertex.
 #[inline(always)]
 fn cross(p: [i32; 2], q: [i32; 2]) -> i32 {
     p[0].wrapping_mul(q[1]).wrapping_sub(p[1].wrapping_mul(q[0]))
+}
+
+fn minus(p: [i32; 2], q: [i32; 2]) -> [i32; 2] {
+    [p[0] - q[0], p[1] - q[1]]
 }
 
 /// Whether a pixel centre of `from .. to` lies between the least and the greatest of four coordinates.
@@ -115,27 +130,16 @@ impl<O: Output> Cells<'_, O> {
         }
     }
 
+    /// Draws a cell that may be seen, given twice the areas of its triangles abc and acd.
     #[inline(always)]
-    fn cell(&mut self, mut cell: Cell<'_>, is_triangle: bool) {
+    fn cell(&mut self, mut cell: Cell<'_>, [abc, acd]: [i32; 2], is_triangle: bool) {
         let [a, b, c, d] = &cell.corners;
-        // All products are exact: corners are less than 2^15 apart.
-        let from_a = |v: &Vertex| [v.x - a.x, v.y - a.y];
-        let (ab, ac, ad) = (from_a(b), from_a(c), from_a(d));
-        let (abc, acd) = (cross(ab, ac), cross(ac, ad));
-        let hidden = match self.side {
-            Side::Both => false,
-            Side::Along => abc >= 0 && acd >= 0,
-            Side::Against => abc <= 0 && acd <= 0,
-        };
-        if hidden {
-            return;
-        }
-        let abd = cross(ab, ad);
+        let abd = cross([b.x - a.x, b.y - a.y], [d.x - a.x, d.y - a.y]);
         let bcd = abc.wrapping_add(acd).wrapping_sub(abd);
         let [x_from, x_to, y_from, y_to] = self.window;
         if (abc | acd | abd) == 0
             || !has_centres([a.y, b.y, c.y, d.y], y_from, y_to)
-            || !has_centres([a.x, b.x, c.x, d.x], x_from, x_to)
+            || (self.is_wide && !has_centres([a.x, b.x, c.x, d.x], x_from, x_to))
         {
             return;
         }
@@ -210,11 +214,17 @@ impl<O: Output> RowSink for Cells<'_, O> {
         }
         let [even, odd] = &mut rows.0;
         let (above, below) = if j & 1 == 1 { (even, odd) } else { (odd, even) };
-        for k in 0..count.saturating_sub(1) {
-            let at = [self.first + k as u32, j];
-            if let (Some([a, b]), Some([d, c])) = (above.get_mut(k..k + 2), below.get_mut(k..k + 2)) {
-                self.cell(Cell { corners: [a, b, c, d], tangents, at }, false);
+        let ends = above.iter().zip(below.iter()).next();
+        let Some((mut a, mut d)) = ends.map(|(a, d)| ([a.x, a.y], [d.x, d.y])) else { return };
+        for k in 0..count.saturating_sub(1).min(super::SEGMENTS) {
+            let (b, c) = (above[k + 1].place(), below[k + 1].place());
+            // All products are exact: corners are less than 2^15 apart.
+            let ac = minus(c, a);
+            let areas = [cross(minus(b, a), ac), cross(ac, minus(d, a))];
+            if !self.side.hides(areas) {
+                self.seen(above, below, (tangents, j, k), areas);
             }
+            (a, d) = (b, c);
         }
         // The row before is longer by one in a triangle, unless the strip ends first.
         let form = self.lighting.form;
@@ -226,13 +236,32 @@ impl<O: Output> RowSink for Cells<'_, O> {
 }
 
 impl<O: Output> Cells<'_, O> {
+    /// The cell after column `k` of the strip.
+    #[inline(never)]
+    fn seen(
+        &mut self,
+        above: &mut Row,
+        below: &mut Row,
+        (tangents, j, k): (&dyn Tangents, u32, usize),
+        areas: [i32; 2],
+    ) {
+        let at = [self.first + k as u32, j];
+        if let (Some([a, b]), Some([d, c])) = (above.get_mut(k..k + 2), below.get_mut(k..k + 2)) {
+            self.cell(Cell { corners: [a, b, c, d], tangents, at }, areas, false);
+        }
+    }
+
     /// The triangle at the end of a row of a triangular patch, after column `k` of the strip.
     #[cold]
     #[inline(never)]
     fn last(&mut self, above: &mut Row, below: &mut Row, (tangents, j, k): (&dyn Tangents, u32, usize)) {
         if let (Some([a, b]), Some(d)) = (above.get_mut(k..k + 2), below.get_mut(k)) {
             let mut c = *d;
-            self.cell(Cell { corners: [a, b, &mut c, d], tangents, at: [self.first + k as u32, j] }, true);
+            let ac = minus(c.place(), a.place());
+            let areas = [cross(minus(b.place(), a.place()), ac), 0];
+            if !self.side.hides(areas) {
+                self.cell(Cell { corners: [a, b, &mut c, d], tangents, at: [self.first + k as u32, j] }, areas, true);
+            }
         }
     }
 }

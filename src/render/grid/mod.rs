@@ -104,7 +104,10 @@ pub(super) fn facets<O: Output>(
     };
     let lighting = Lighting { light, style, net: patch.net, form: &form };
     let (side, window_of) = (Side::of(patch.inward), output.window());
-    let mut cells = Cells { patch: patch.index, lighting, side, output, window: window_of, first: 0, facets: 0 };
+    let bounds = patch.net.bounds();
+    let is_wide = bounds.min.x.to_bits() >> 16 < window_of[0] || bounds.max.x.to_bits() >> 16 >= window_of[1] - 1;
+    let mut cells =
+        Cells { patch: patch.index, lighting, side, output, window: window_of, is_wide, first: 0, facets: 0 };
     let mut rows = Rows::new();
     match walk {
         Walk::Bicubic(grid) => {
@@ -114,7 +117,7 @@ pub(super) fn facets<O: Output>(
         }
         Walk::General(plan) => general(&plan, &mut rows, &mut cells, (style, window)),
     }
-    Statistics { vertices: form.point_count(), facets: cells.facets, ..Statistics::default() }
+    Statistics { vertices: form.point_count(), facets: cells.facets.into(), ..Statistics::default() }
 }
 
 /// The level of a depth in styles that need no normals.

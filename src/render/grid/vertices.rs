@@ -53,6 +53,11 @@ pub(super) struct Vertex {
 
 impl Vertex {
     const NONE: Self = Self { x: 0, y: 0, depth: 0, level: 0, lit: Lit::Unknown };
+
+    #[inline(always)]
+    pub(super) fn place(&self) -> [i32; 2] {
+        [self.x, self.y]
+    }
 }
 
 /// Room at both ends of the depths, 1/64 of the range: what a plane through a facet may err.
