@@ -77,15 +77,15 @@ pub(crate) const fn reciprocal(value: u32) -> (u32, u32) {
     (invert(value << (zeros & 31) >> 16), zeros)
 }
 
-/// ⌊a·b/2^16⌋ for b below 2^16.
+/// ⌊a·b/2^17⌋ for b below 2^16.
 #[inline(always)]
 pub(crate) const fn multiply(a: i32, b: u32) -> i32 {
-    if HAS_DIVIDER { ((a as i64 * b as i64) >> 16) as i32 } else { multiply_in_halves(a, b) }
+    if HAS_DIVIDER { ((a as i64 * (b << 15) as i64) >> 32) as i32 } else { multiply_in_halves(a, b) }
 }
 
 const fn multiply_in_halves(a: i32, b: u32) -> i32 {
     let low = (a as u32 & 0xffff).wrapping_mul(b) >> 16;
-    (a >> 16).wrapping_mul(b as i32).wrapping_add(low as i32)
+    (a >> 16).wrapping_mul(b as i32).wrapping_add(low as i32) >> 1
 }
 
 /// 2^15 over the square roots of (k + 1/2)/256, k from 64 on, rounded.
@@ -187,7 +187,7 @@ mod tests {
             assert_eq!(u64::from(factor.high(a)), (u64::from(a) * u64::from(b)) >> 32);
             assert_eq!(factor.high_in_halves(a), factor.high(a));
             assert_eq!(multiply_in_halves(a as i32, b & 0xffff), multiply(a as i32, b & 0xffff));
-            assert_eq!(i64::from(multiply(a as i32, b & 0xffff)), (i64::from(a as i32) * i64::from(b & 0xffff)) >> 16);
+            assert_eq!(i64::from(multiply(a as i32, b & 0xffff)), (i64::from(a as i32) * i64::from(b & 0xffff)) >> 17);
         }
     }
 }

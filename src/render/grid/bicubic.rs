@@ -211,7 +211,6 @@ impl<'a> Bicubic<'a> {
                 grid.exact(first, &sides[0]);
                 grid.exact(last, &sides[1]);
             }
-            put.levels(out);
             sink.row(rows, &slopes, j as u32, n_r as usize + 1);
             columns.as_flattened_mut().iter_mut().for_each(Cubic::step);
             sides.as_flattened_mut().iter_mut().for_each(Exact::step);
@@ -234,19 +233,14 @@ impl Put<'_> {
         match AXIS {
             0 => vertex.x = c,
             1 => vertex.y = c,
-            _ => vertex.depth = self.window.depth_of_256(c),
-        }
-    }
-
-    /// Finishes a row whose depths are known: with room, and with levels where these are depths alone.
-    #[inline(always)]
-    fn levels(&self, row: &mut [Vertex]) {
-        for vertex in row {
-            (vertex.level, vertex.lit) = match self.level {
-                Some(level) => (level(vertex.depth), Lit::Both),
-                None => (0, Lit::Unknown),
-            };
-            vertex.depth = with_room(vertex.depth);
+            _ => {
+                let depth = self.window.depth_of_256(c);
+                vertex.depth = with_room(depth);
+                (vertex.level, vertex.lit) = match self.level {
+                    Some(level) => (level(depth), Lit::Both),
+                    None => (0, Lit::Unknown),
+                };
+            }
         }
     }
 }

@@ -114,26 +114,20 @@ struct Cell<'r> {
 }
 
 impl<O: Output> Cells<'_, O> {
-    /// The level of a corner on the side that is seen.
+    /// The level of a corner on the side that is seen; `dark` is how it is lit where that is the other side.
     #[inline(always)]
-    fn level(&self, cell: &mut Cell<'_>, corner: usize, along: bool) -> u8 {
-        let vertex = &mut *cell.corners[corner & 3];
+    fn level(&self, vertex: &mut Vertex, corner: usize, dark: Lit, tangents: &dyn Tangents, at: [u32; 2]) -> u8 {
         if vertex.lit == Lit::Unknown {
-            let i = cell.at[0] + u32::from(corner == 1 || corner == 2);
-            let j = cell.at[1] - u32::from(corner < 2);
-            self.lighting.shade(vertex, cell.tangents.tangents(i, j), i, j);
+            let (i, j) = (at[0] + u32::from(corner == 1 || corner == 2), at[1] - u32::from(corner < 2));
+            self.lighting.shade(vertex, tangents.tangents(i, j), i, j);
         }
-        match vertex.lit {
-            Lit::Against if along => self.lighting.light.ambient(),
-            Lit::Along if !along => self.lighting.light.ambient(),
-            _ => vertex.level,
-        }
+        if vertex.lit == dark { self.lighting.light.ambient() } else { vertex.level }
     }
 
     /// Draws a cell that may be seen, given twice the areas of its triangles abc and acd.
     #[inline(always)]
-    fn cell(&mut self, mut cell: Cell<'_>, [abc, acd]: [i32; 2], is_triangle: bool) {
-        let [a, b, c, d] = &cell.corners;
+    fn cell(&mut self, cell: Cell<'_>, [abc, acd]: [i32; 2], is_triangle: bool) {
+        let Cell { corners: [a, b, c, d], tangents, at } = cell;
         let abd = cross([b.x - a.x, b.y - a.y], [d.x - a.x, d.y - a.y]);
         let bcd = abc.wrapping_add(acd).wrapping_sub(abd);
         let [x_from, x_to, y_from, y_to] = self.window;
@@ -143,28 +137,23 @@ impl<O: Output> Cells<'_, O> {
         {
             return;
         }
-        if (abc | acd | abd | bcd) >= 0 || (abc <= 0 && acd <= 0 && abd <= 0 && bcd <= 0) {
-            let along = abc < 0 || acd < 0;
-            if is_triangle {
-                self.triangle(&mut cell, along, [0, 1, 3]);
+        let is_convex = (abc | acd | abd | bcd) >= 0 || (abc <= 0 && acd <= 0 && abd <= 0 && bcd <= 0);
+        if !is_convex || is_triangle {
+            let mut cell = Cell { corners: [a, b, c, d], tangents, at };
+            return if is_triangle {
+                self.triangle(&mut cell, abc < 0, [0, 1, 3]);
             } else {
-                self.convex(&mut cell, along);
-            }
-        } else if (abc >= 0) != (acd >= 0) && (abd >= 0) == (bcd >= 0) {
-            let along = abd < 0 || bcd < 0;
-            self.triangle(&mut cell, along, [0, 1, 3]);
-            self.triangle(&mut cell, along, [1, 2, 3]);
-        } else {
-            self.triangle(&mut cell, abc < 0, [0, 1, 2]);
-            self.triangle(&mut cell, acd < 0, [0, 2, 3]);
+                self.folded(&mut cell, [abc, acd, abd, bcd]);
+            };
         }
-    }
-
-    /// A convex cell.
-    #[inline(always)]
-    fn convex(&mut self, cell: &mut Cell<'_>, along: bool) {
-        let level = [0, 1, 2, 3].map(|k| self.level(cell, k, along));
-        let [a, b, c, d] = &cell.corners;
+        let along = abc < 0 || acd < 0;
+        let dark = if along { Lit::Against } else { Lit::Along };
+        let level = [
+            self.level(a, 0, dark, tangents, at),
+            self.level(b, 1, dark, tangents, at),
+            self.level(c, 2, dark, tangents, at),
+            self.level(d, 3, dark, tangents, at),
+        ];
         // Clockwise on the screen: the other way round where S_r × S_s looks at the viewer.
         let (b, d, second, fourth) = if along { (d, b, level[3], level[1]) } else { (b, d, level[1], level[3]) };
         let quad = Quad {
@@ -178,17 +167,33 @@ impl<O: Output> Cells<'_, O> {
         let of_levels = warp(level[0].into(), second.into(), level[2].into(), fourth.into());
         let of_depths = warp(a.depth.into(), b.depth.into(), c.depth.into(), d.depth.into());
         self.facets += 1;
-        if of_levels > WARP.0 || of_depths > WARP.1 {
-            self.facets += 1;
-            self.output.facet(&quad.corners([0, 1, 2, 2]));
-            self.output.facet(&quad.corners([0, 2, 3, 3]));
+        if of_levels > WARP.0 || of_depths > WARP.1 { self.halves(&quad) } else { self.output.facet(&quad) }
+    }
+
+    /// A cell that is no plane, as two triangles.
+    #[cold]
+    #[inline(never)]
+    fn halves(&mut self, quad: &Quad) {
+        self.facets += 1;
+        self.output.facet(&quad.corners([0, 1, 2, 2]));
+        self.output.facet(&quad.corners([0, 2, 3, 3]));
+    }
+
+    /// A cell that is not convex, cut along one of its diagonals.
+    #[cold]
+    #[inline(never)]
+    fn folded(&mut self, cell: &mut Cell<'_>, [abc, acd, abd, bcd]: [i32; 4]) {
+        if (abc >= 0) != (acd >= 0) && (abd >= 0) == (bcd >= 0) {
+            let along = abd < 0 || bcd < 0;
+            self.triangle(cell, along, [0, 1, 3]);
+            self.triangle(cell, along, [1, 2, 3]);
         } else {
-            self.output.facet(&quad);
+            self.triangle(cell, abc < 0, [0, 1, 2]);
+            self.triangle(cell, acd < 0, [0, 2, 3]);
         }
     }
 
     /// A triangle of three corners, its last one twice.
-    #[cold]
     #[inline(never)]
     fn triangle(&mut self, cell: &mut Cell<'_>, along: bool, corners: [usize; 3]) {
         if !self.side.shows(along) {
@@ -196,10 +201,11 @@ impl<O: Output> Cells<'_, O> {
         }
         let [a, b, c] = corners;
         let order = if along { [a, c, c, b] } else { [a, b, c, c] };
+        let dark = if along { Lit::Against } else { Lit::Along };
         let mut quad = Quad { x: [0; 4], y: [0; 4], depth: [0; 4], level: [0; 4], patch: self.patch };
         for (k, corner) in order.into_iter().enumerate() {
-            quad.level[k] = self.level(cell, corner, along);
-            let vertex = &cell.corners[corner & 3];
+            let vertex = &mut *cell.corners[corner & 3];
+            quad.level[k] = self.level(vertex, corner, dark, cell.tangents, cell.at);
             (quad.x[k], quad.y[k], quad.depth[k]) = (vertex.x, vertex.y, vertex.depth);
         }
         self.facets += 1;

@@ -161,12 +161,13 @@ fn planes(quad: &Quad, [width, height]: [i32; 2], start: [i32; 2]) -> [Plane; 2]
         // Factors below 2^15 and of at most 2^15: the products' difference fits. A pixel is 2^8 units; the reciprocal is
         // 2^15 times the inverse of the area shifted up by its zeros, and the product 2^17 less.
         let cross = |a: i32, b: i32| dp.wrapping_mul(a).wrapping_sub(dq.wrapping_mul(b));
-        let slope = |n: i32| multiply(n, reciprocal) >> 1;
+        let slope = |n: i32| multiply(n, reciprocal);
         let (by_x, by_y) = (slope(cross(q[1], p[1])), slope(cross(q[0], p[0])).wrapping_neg());
         let up = bits - 22 + zeros as i32;
         let slopes = if up <= 0 {
             [by_x >> -up, by_y >> -up]
-        } else if (by_x.unsigned_abs() | by_y.unsigned_abs()) >> (31 - up) == 0 {
+        } else if bits == LEVEL_BITS || (by_x.unsigned_abs() | by_y.unsigned_abs()) >> (31 - up) == 0 {
+            // Levels, of 8 bits, cannot be as steep: no facet here is thinner than 1/32 pixel.
             [by_x << up, by_y << up]
         } else {
             // Steeper than 2^31 to a pixel: constant.
