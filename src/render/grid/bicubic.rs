@@ -127,7 +127,10 @@ impl Cube {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bicubic<'a> {
     net: SurfaceNet<'a>,
+    /// Segments of a row, and of a column.
     counts: (u32, u32),
+    /// Whether rows run along s, the direction of more segments: a row's start costs as much as several vertices.
+    is_turned: bool,
     /// The corner of the box that nothing is below, in 1/256 pixel.
     origin: [i32; 3],
     fraction_bits: u32,
@@ -148,14 +151,30 @@ impl<'a> Bicubic<'a> {
         // n³ is at most 2^15, an extent 2^16 pixels.
         let size = 32 - (n * n * n).checked_mul(extent.unsigned_abs() + 1)?.leading_zeros();
         let fraction_bits = 29_u32.checked_sub(size)?.min(16);
-        (fraction_bits >= 10 && extent < 1 << 14).then_some(Self { net, counts: (r, s), origin, fraction_bits })
+        let (counts, is_turned) = ((n, r.min(s)), s > r);
+        (fraction_bits >= 10 && extent < 1 << 14).then_some(Self { net, counts, is_turned, origin, fraction_bits })
     }
 
     pub(super) fn form(&self) -> Form<'a> {
-        Form::surface(self.net, self.counts)
+        let (long, short) = self.counts;
+        Form::surface(self.net, if self.is_turned { (short, long) } else { (long, short) })
     }
 
-    /// Coordinates of a column (or of a row) of the net, in 2^-16 pixel from the origin.
+    /// Whether what the walk calls r is s, and the other way round.
+    pub(super) fn is_turned(&self) -> bool {
+        self.is_turned
+    }
+
+    /// Coordinates of the column `k` of the net, across the rows of the grid, in 2^-16 pixel from the origin.
+    fn column(&self, axis: usize, k: usize) -> [i32; 4] {
+        if self.is_turned { self.line(axis, k, 4) } else { self.line(axis, 4 * k, 1) }
+    }
+
+    /// Coordinates of the row `k` of the net.
+    fn row(&self, axis: usize, k: usize) -> [i32; 4] {
+        if self.is_turned { self.line(axis, 4 * k, 1) } else { self.line(axis, k, 4) }
+    }
+
     fn line(&self, axis: usize, first: usize, stride: usize) -> [i32; 4] {
         let origin = self.origin[axis] << 8;
         core::array::from_fn(|k| {
@@ -177,10 +196,10 @@ impl<'a> Bicubic<'a> {
         let mut columns = [[Cubic::default(); 4]; 3];
         for (axis, columns) in columns.iter_mut().enumerate() {
             for (a, column) in columns.iter_mut().enumerate() {
-                *column = Cubic::new(self.line(axis, 4 * a, 1).map(|c| c >> drop), n_s);
+                *column = Cubic::new(self.column(axis, a).map(|c| c >> drop), n_s);
             }
         }
-        let mut sides = [0, 12].map(|a| [0, 1, 2].map(|axis| Exact::new(self.line(axis, a, 1), n_s)));
+        let mut sides = [0, 3].map(|a| [0, 1, 2].map(|axis| Exact::new(self.column(axis, a), n_s)));
         let put = Put { origin: self.origin, window, level };
         let mut slopes = Slopes([Slope::default(); 2]);
         for j in 0..=n_s {
@@ -199,9 +218,9 @@ impl<'a> Bicubic<'a> {
             }
             if j == 0 || j == n_s {
                 let end = if j == 0 { 0 } else { 3 };
-                grid.edge::<0>(out, Exact::new(self.line(0, end, 4), n_r));
-                grid.edge::<1>(out, Exact::new(self.line(1, end, 4), n_r));
-                grid.edge::<2>(out, Exact::new(self.line(2, end, 4), n_r));
+                grid.edge::<0>(out, Exact::new(self.row(0, end), n_r));
+                grid.edge::<1>(out, Exact::new(self.row(1, end), n_r));
+                grid.edge::<2>(out, Exact::new(self.row(2, end), n_r));
             } else {
                 grid.inside::<0>(out, Cubic::new(control[0], n_r));
                 grid.inside::<1>(out, Cubic::new(control[1], n_r));

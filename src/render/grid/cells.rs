@@ -15,13 +15,19 @@ pub(in crate::render) struct Lighting<'a> {
     pub(super) style: Style,
     pub(super) net: SurfaceNet<'a>,
     pub(super) form: &'a Form<'a>,
+    /// Whether the walk's r is the patch's s, and the other way round.
+    pub(super) is_turned: bool,
 }
 
 impl Lighting<'_> {
     /// The level of the side that the light reaches, and which one it is.
     #[inline(never)]
     fn shade(&self, vertex: &mut Vertex, tangents: [[i16; 3]; 2], i: u32, j: u32) {
-        let inside = || normal_of(tangents_inside(self.net, self.form, i, j)?.map(short));
+        let inside = || {
+            let (i, j) = if self.is_turned { (j, i) } else { (i, j) };
+            let [r, s] = tangents_inside(self.net, self.form, i, j)?.map(short);
+            normal_of(if self.is_turned { [s, r] } else { [r, s] })
+        };
         let normal = normal_of(tangents).or_else(inside).unwrap_or([0, 0, -1]);
         let (level, along) = self.light.level_of_lit_side(normal);
         vertex.level = match self.style {

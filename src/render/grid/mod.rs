@@ -98,12 +98,13 @@ pub(super) fn facets<O: Output>(
     }
     // Checked with the scene, so it cannot fail here.
     let Ok(walk) = Walk::of(patch.net, patch.counts) else { return Statistics::default() };
-    let form = match &walk {
-        Walk::Bicubic(grid) => grid.form(),
-        Walk::General(plan) => plan.form,
+    let (form, is_turned) = match &walk {
+        Walk::Bicubic(grid) => (grid.form(), grid.is_turned()),
+        Walk::General(plan) => (plan.form, false),
     };
-    let lighting = Lighting { light, style, net: patch.net, form: &form };
-    let (side, window_of) = (Side::of(patch.inward), output.window());
+    let lighting = Lighting { light, style, net: patch.net, form: &form, is_turned };
+    // S_s × S_r points the other way.
+    let (side, window_of) = (Side::of(patch.inward.map(|inward| inward != is_turned)), output.window());
     let bounds = patch.net.bounds();
     let is_wide = bounds.min.x.to_bits() >> 16 < window_of[0] || bounds.max.x.to_bits() >> 16 >= window_of[1] - 1;
     let mut cells =

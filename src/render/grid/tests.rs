@@ -61,8 +61,13 @@ fn general(net: SurfaceNet<'_>, counts: (u32, u32)) -> Vertices {
 fn short(net: SurfaceNet<'_>, counts: (u32, u32)) -> Option<Vertices> {
     let (mut all, mut rows) = (BTreeMap::new(), Rows::new());
     let window = DepthWindow::of(WINDOW.0, WINDOW.1);
-    Bicubic::of(net, counts)?.walk(&mut rows, &mut Keep(&mut all, 0), window, None);
-    Some(all)
+    let grid = Bicubic::of(net, counts)?;
+    grid.walk(&mut rows, &mut Keep(&mut all, 0), window, None);
+    if !grid.is_turned() {
+        return Some(all);
+    }
+    let turn = |((i, j), Kept { vertex, tangents: [r, s] })| ((j, i), Kept { vertex, tangents: [s, r] });
+    Some(all.into_iter().map(turn).collect())
 }
 
 fn place(v: &Kept) -> [i32; 3] {
