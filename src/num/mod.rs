@@ -12,6 +12,7 @@
 //! | [`Word`] | what the engine accumulates in: `i32`, `i64`, `i128` | chosen from a proven budget |
 
 mod coord;
+mod reciprocal;
 mod round;
 mod text;
 mod trig;
@@ -24,6 +25,7 @@ pub use trig::Angle;
 pub use word::Word;
 
 pub(crate) use coord::{bits_i16f16, bits_i32f32};
+pub(crate) use reciprocal::{Factor, multiply, reciprocal, reciprocal_root};
 pub(crate) use round::{BINOMIAL, SURJECTIONS, div_half_up, div_up, shift_half_up, shift_up, sqrt_up};
 pub(crate) use text::{Decimal, binary32};
 pub(crate) use wide::Wide;

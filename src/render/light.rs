@@ -1,7 +1,7 @@
 //! Light and shade.
 
 use super::{Gloss, RenderError};
-use crate::num::Word;
+use crate::num::{Word, reciprocal_root};
 
 /// A light from a fixed direction, and the level of what it does not reach.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,6 +101,20 @@ impl Light {
     }
 }
 
+impl Light {
+    /// The level of a surface with this normal vector of components of at most 2^15 on the side that the light reaches,
+    /// without a division and within 1 of the exact one; and whether that is the side to which it points.
+    pub(super) fn level_of_lit_side(&self, normal: [i32; 3]) -> (u8, bool) {
+        let dot = normal.iter().zip(&self.direction).map(|(n, l)| n * l).sum::<i32>();
+        let square: u32 = normal.iter().map(|n| n.unsigned_abs().pow(2)).sum();
+        let (root, half) = reciprocal_root(square.max(1));
+        // The normal is shorter than 2^half: the product is at most 2^31, and the cosine's in 2^-31.
+        let cosine = (dot.unsigned_abs() >> (half.max(1) - 1)).wrapping_mul(root) >> 16;
+        let above = (u32::from(255 - self.ambient) * cosine + (1 << 14)) >> 15;
+        (self.ambient.saturating_add(above as u8), dot >= 0)
+    }
+}
+
 /// The normal U × V, turned to the viewer.
 #[cfg(all(test, feature = "std"))]
 pub(super) fn normal<W: Word>(tangents: [[W; 3]; 2]) -> Option<[i32; 3]> {
@@ -174,6 +188,28 @@ mod tests {
         assert_eq!(light.level([32767, 0, 0]), 40);
         assert_eq!(Light::towards(1, 0, 0, 40).unwrap().level([-3000, 0, -5]), 40);
         assert_eq!(Light::towards(0, 0, -1, 255).unwrap().level([32767, 32767, -32767]), 255);
+    }
+
+    #[test]
+    fn levels_without_a_division_are_as_good() {
+        let light = Light::towards(3, -4, -7, 20).unwrap();
+        let mut state = 1_u32;
+        let mut next = |bits: u32| {
+            state = state.wrapping_mul(0x915f_77f5).wrapping_add(12_345);
+            (state as i32) >> (31 - bits)
+        };
+        for k in 0..200_000 {
+            let bits = 1 + k % 15;
+            let normal = [next(bits), next(bits), next(bits)];
+            let (level, along) = light.level_of_lit_side(normal);
+            let dot: i64 = normal.iter().zip(light.direction()).map(|(n, l)| i64::from(n * l)).sum();
+            let square: u64 = normal.iter().map(|n| u64::from(n.unsigned_abs()).pow(2)).sum();
+            let length = (square << 32).isqrt().max(1);
+            let exact = 20 + (((235 * dot.unsigned_abs()) << 2) / length).div_ceil(2);
+            assert!(u64::from(level).abs_diff(exact) <= 1, "{normal:?} {level} {exact}");
+            let other = light.level(if along { normal } else { normal.map(|c| -c) });
+            assert!(square < 1 << 16 || level.abs_diff(other) <= 1, "{normal:?} {level} {other}");
+        }
     }
 
     #[test]

@@ -106,8 +106,8 @@ impl<'b, P: Copy> Tile<'b, P> {
         let (Some(colour), Some(depth)) = (colour.get_mut(..needed), depth.get_mut(..needed)) else {
             return Err(error);
         };
-        colour.fill(background);
-        depth.fill(FAR);
+        fill(colour, background);
+        fill(depth, FAR);
         Ok(Self { area, colour, depth })
     }
 
@@ -139,15 +139,20 @@ impl<'b, P: Copy> Tile<'b, P> {
     pub(super) fn parts(&mut self) -> (Area, &mut [P], &mut [u16]) {
         (self.area, self.colour, self.depth)
     }
+}
 
-    /// The colours and stored depths of the rows from a row on.
-    #[inline(always)]
-    pub(super) fn rows_from(&mut self, row: usize) -> impl Iterator<Item = (&mut [P], &mut [u16])> {
-        let width = (self.area.width as usize).max(1);
-        let start = row * width;
-        let colour = self.colour.get_mut(start..).unwrap_or_default().chunks_exact_mut(width);
-        colour.zip(self.depth.get_mut(start..).unwrap_or_default().chunks_exact_mut(width))
+/// Fills a buffer: on cores that store words anywhere (of the small ones, those with atomics), 16 elements at a time.
+fn fill<T: Copy>(buffer: &mut [T], value: T) {
+    if cfg!(not(target_has_atomic = "32")) {
+        return buffer.fill(value);
     }
+    let (chunks, rest) = buffer.as_chunks_mut::<16>();
+    for chunk in chunks {
+        *chunk = [value; 16];
+        // Keeps the compiler from making a call of this loop, to one that takes twice as long.
+        core::hint::black_box(());
+    }
+    rest.fill(value);
 }
 
 /// Whether `depth` is nearer than what is stored; it is stored then, as drawn.

@@ -3,7 +3,7 @@
 use super::super::light::{Light, normal_of, short};
 use super::super::pen::tangents_inside;
 use super::super::style::Style;
-use super::vertices::{Lit, Row, RowSink, Rows, Vertex};
+use super::vertices::{Lit, Row, RowSink, Rows, Tangents, Vertex};
 use super::{FRACTION_BITS, Output, Quad};
 use crate::forward::Form;
 use crate::patch::SurfaceNet;
@@ -15,34 +15,26 @@ pub(in crate::render) struct Lighting<'a> {
     pub(super) style: Style,
     pub(super) net: SurfaceNet<'a>,
     pub(super) form: &'a Form<'a>,
+    /// Whether the walk's r is the patch's s, and the other way round.
+    pub(super) is_turned: bool,
 }
 
 impl Lighting<'_> {
     /// The level of the side that the light reaches, and which one it is.
     #[inline(never)]
-    fn shade(&self, vertex: &mut Vertex, i: u32, j: u32) {
-        let inside = || normal_of(tangents_inside(self.net, self.form, i, j)?.map(short));
-        let normal = normal_of(vertex.tangents).or_else(inside).unwrap_or([0, 0, -1]);
-        let along = normal.iter().zip(self.light.direction()).map(|(n, l)| n * l).sum::<i32>() >= 0;
-        let normal = if along { normal } else { normal.map(|n| -n) };
+    fn shade(&self, vertex: &mut Vertex, tangents: [[i16; 3]; 2], i: u32, j: u32) {
+        let inside = || {
+            let (i, j) = if self.is_turned { (j, i) } else { (i, j) };
+            let [r, s] = tangents_inside(self.net, self.form, i, j)?.map(short);
+            normal_of(if self.is_turned { [s, r] } else { [r, s] })
+        };
+        let normal = normal_of(tangents).or_else(inside).unwrap_or([0, 0, -1]);
+        let (level, along) = self.light.level_of_lit_side(normal);
         vertex.level = match self.style {
-            Style::Glossy(gloss) => self.light.glossy(normal, gloss),
-            _ => self.light.level(normal),
+            Style::Glossy(gloss) => self.light.glossy(if along { normal } else { normal.map(|n| -n) }, gloss),
+            _ => level,
         };
         vertex.lit = if along { Lit::Along } else { Lit::Against };
-    }
-
-    /// The level of a vertex on the side that is seen.
-    #[inline(always)]
-    fn level(&self, vertex: &mut Vertex, along: bool, i: u32, j: u32) -> u8 {
-        if vertex.lit == Lit::Unknown {
-            self.shade(vertex, i, j);
-        }
-        match vertex.lit {
-            Lit::Against if along => self.light.ambient(),
-            Lit::Along if !along => self.light.ambient(),
-            _ => vertex.level,
-        }
     }
 }
 
@@ -63,6 +55,16 @@ impl Side {
         }
     }
 
+    /// Whether both triangles of a cell of these areas are hidden.
+    #[inline(always)]
+    fn hides(self, [abc, acd]: [i32; 2]) -> bool {
+        match self {
+            Self::Both => false,
+            Self::Along => abc >= 0 && acd >= 0,
+            Self::Against => abc <= 0 && acd <= 0,
+        }
+    }
+
     fn shows(self, along: bool) -> bool {
         match self {
             Self::Both => true,
@@ -80,15 +82,21 @@ pub(super) struct Cells<'a, O> {
     pub(super) output: &'a mut O,
     /// The output's.
     pub(super) window: [i32; 4],
+    /// Whether the patch may leave its columns.
+    pub(super) is_wide: bool,
     /// The first column of the strip.
     pub(super) first: u32,
-    pub(super) facets: u64,
+    pub(super) facets: u32,
 }
 
-/// Twice the signed area of three vertices, exact: they are less than 2^15 apart.
+/// Twice the signed area between two sides that leave a vertex.
 #[inline(always)]
-fn area(a: &Vertex, b: &Vertex, c: &Vertex) -> i32 {
-    (b.x - a.x).wrapping_mul(c.y - a.y).wrapping_sub((b.y - a.y).wrapping_mul(c.x - a.x))
+fn cross(p: [i32; 2], q: [i32; 2]) -> i32 {
+    p[0].wrapping_mul(q[1]).wrapping_sub(p[1].wrapping_mul(q[0]))
+}
+
+fn minus(p: [i32; 2], q: [i32; 2]) -> [i32; 2] {
+    [p[0] - q[0], p[1] - q[1]]
 }
 
 /// Whether a pixel centre of `from .. to` lies between the least and the greatest of four coordinates.
@@ -102,110 +110,170 @@ fn has_centres([a, b, c, d]: [i32; 4], from: i32, to: i32) -> bool {
 /// How far a plane may be from the corners of a quad: 4 times 12 levels, 4 times 1/128 of the depths.
 const WARP: (i32, i32) = (48, 1024);
 
-/// Two rows and the cell between them.
+/// A cell between two rows.
 struct Cell<'r> {
-    above: &'r mut Row,
-    below: &'r mut Row,
-    k: usize,
-    j: u32,
-}
-
-/// A corner of a cell, in the order in which they go round.
-#[derive(Clone, Copy)]
-enum Corner {
-    A,
-    B,
-    C,
-    D,
-}
-
-impl Cell<'_> {
-    #[inline(always)]
-    fn vertex(&mut self, corner: Corner) -> Option<(&mut Vertex, usize, u32)> {
-        let (row, column, j) = match corner {
-            Corner::A => (&mut *self.above, self.k, self.j - 1),
-            Corner::B => (&mut *self.above, self.k + 1, self.j - 1),
-            Corner::C => (&mut *self.below, self.k + 1, self.j),
-            Corner::D => (&mut *self.below, self.k, self.j),
-        };
-        Some((row.get_mut(column)?, column, j))
-    }
+    /// (i, j−1), (i+1, j−1), (i+1, j), (i, j); of a triangle the third is not used.
+    corners: [&'r mut Vertex; 4],
+    tangents: &'r dyn Tangents,
+    /// i and j.
+    at: [u32; 2],
 }
 
 impl<O: Output> Cells<'_, O> {
-    /// The cell with the corners (i, j−1), (i+1, j−1), (i+1, j), (i, j); a triangle lacks the third.
-    fn cell(&mut self, mut cell: Cell<'_>, is_triangle: bool) {
-        let (above, below) = (cell.above.get(cell.k..cell.k + 2), cell.below.get(cell.k..cell.k + 2));
-        let (Some([a, b]), Some([d, c])) = (above, below) else { return };
-        let c = if is_triangle { d } else { c };
+    /// The level of a corner on the side that is seen; `dark` is how it is lit where that is the other side.
+    #[inline(always)]
+    fn level(&self, vertex: &mut Vertex, corner: usize, dark: Lit, tangents: &dyn Tangents, at: [u32; 2]) -> u8 {
+        if vertex.lit == Lit::Unknown {
+            let (i, j) = (at[0] + u32::from(corner == 1 || corner == 2), at[1] - u32::from(corner < 2));
+            self.lighting.shade(vertex, tangents.tangents(i, j), i, j);
+        }
+        if vertex.lit == dark { self.lighting.light.ambient() } else { vertex.level }
+    }
+
+    /// Draws a cell that may be seen, given twice the areas of its triangles abc and acd.
+    #[inline(always)]
+    fn cell(&mut self, cell: Cell<'_>, [abc, acd]: [i32; 2], is_triangle: bool) {
+        let Cell { corners: [a, b, c, d], tangents, at } = cell;
+        let abd = cross([b.x - a.x, b.y - a.y], [d.x - a.x, d.y - a.y]);
+        let bcd = abc.wrapping_add(acd).wrapping_sub(abd);
         let [x_from, x_to, y_from, y_to] = self.window;
-        if !has_centres([a.y, b.y, c.y, d.y], y_from, y_to) || !has_centres([a.x, b.x, c.x, d.x], x_from, x_to) {
+        if (abc | acd | abd) == 0
+            || !has_centres([a.y, b.y, c.y, d.y], y_from, y_to)
+            || (self.is_wide && !has_centres([a.x, b.x, c.x, d.x], x_from, x_to))
+        {
             return;
         }
-        let (abc, acd) = (area(a, b, c), area(a, c, d));
-        let hidden = match self.side {
-            Side::Both => (abc | acd) == 0 && area(a, b, d) == 0,
-            Side::Along => abc >= 0 && acd >= 0,
-            Side::Against => abc <= 0 && acd <= 0,
+        let is_convex = (abc | acd | abd | bcd) >= 0 || (abc <= 0 && acd <= 0 && abd <= 0 && bcd <= 0);
+        if !is_convex || is_triangle {
+            let mut cell = Cell { corners: [a, b, c, d], tangents, at };
+            return if is_triangle {
+                self.triangle(&mut cell, abc < 0, [0, 1, 3]);
+            } else {
+                self.folded(&mut cell, [abc, acd, abd, bcd]);
+            };
+        }
+        let along = abc < 0 || acd < 0;
+        let dark = if along { Lit::Against } else { Lit::Along };
+        let level = [
+            self.level(a, 0, dark, tangents, at),
+            self.level(b, 1, dark, tangents, at),
+            self.level(c, 2, dark, tangents, at),
+            self.level(d, 3, dark, tangents, at),
+        ];
+        // Clockwise on the screen: the other way round where S_r × S_s looks at the viewer.
+        let (b, d, second, fourth) = if along { (d, b, level[3], level[1]) } else { (b, d, level[1], level[3]) };
+        let quad = Quad {
+            x: [a.x, b.x, c.x, d.x],
+            y: [a.y, b.y, c.y, d.y],
+            depth: [a.depth, b.depth, c.depth, d.depth],
+            level: [level[0], second, level[2], fourth],
+            patch: self.patch,
         };
-        if hidden {
-            return;
-        }
-        let (abd, bcd) = (area(a, b, d), area(b, c, d));
-        let third = if is_triangle { Corner::D } else { Corner::C };
-        if (abc | acd | abd | bcd) >= 0 || (abc <= 0 && acd <= 0 && abd <= 0 && bcd <= 0) {
-            self.convex(&mut cell, abc < 0 || acd < 0, [Corner::A, Corner::B, third, Corner::D], !is_triangle);
-        } else if (abc >= 0) != (acd >= 0) && (abd >= 0) == (bcd >= 0) {
+        let warp = |a: i32, b: i32, c: i32, d: i32| (a - b + c - d).abs();
+        let of_levels = warp(level[0].into(), second.into(), level[2].into(), fourth.into());
+        let of_depths = warp(a.depth.into(), b.depth.into(), c.depth.into(), d.depth.into());
+        self.facets += 1;
+        if of_levels > WARP.0 || of_depths > WARP.1 { self.halves(&quad) } else { self.output.facet(&quad) }
+    }
+
+    /// A cell that is no plane, as two triangles.
+    #[cold]
+    #[inline(never)]
+    fn halves(&mut self, quad: &Quad) {
+        self.facets += 1;
+        self.output.facet(&quad.corners([0, 1, 2, 2]));
+        self.output.facet(&quad.corners([0, 2, 3, 3]));
+    }
+
+    /// A cell that is not convex, cut along one of its diagonals.
+    #[cold]
+    #[inline(never)]
+    fn folded(&mut self, cell: &mut Cell<'_>, [abc, acd, abd, bcd]: [i32; 4]) {
+        if (abc >= 0) != (acd >= 0) && (abd >= 0) == (bcd >= 0) {
             let along = abd < 0 || bcd < 0;
-            self.convex(&mut cell, along, [Corner::A, Corner::B, Corner::D, Corner::D], false);
-            self.convex(&mut cell, along, [Corner::B, Corner::C, Corner::D, Corner::D], false);
+            self.triangle(cell, along, [0, 1, 3]);
+            self.triangle(cell, along, [1, 2, 3]);
         } else {
-            self.convex(&mut cell, abc < 0, [Corner::A, Corner::B, Corner::C, Corner::C], false);
-            self.convex(&mut cell, acd < 0, [Corner::A, Corner::C, Corner::D, Corner::D], false);
+            self.triangle(cell, abc < 0, [0, 1, 2]);
+            self.triangle(cell, acd < 0, [0, 2, 3]);
         }
     }
 
-    /// A convex quad, or a triangle with its last corner twice.
-    fn convex(&mut self, cell: &mut Cell<'_>, along: bool, corners: [Corner; 4], is_quad: bool) {
+    /// A triangle of three corners, its last one twice.
+    #[inline(never)]
+    fn triangle(&mut self, cell: &mut Cell<'_>, along: bool, corners: [usize; 3]) {
         if !self.side.shows(along) {
             return;
         }
+        let [a, b, c] = corners;
+        let order = if along { [a, c, c, b] } else { [a, b, c, c] };
+        let dark = if along { Lit::Against } else { Lit::Along };
         let mut quad = Quad { x: [0; 4], y: [0; 4], depth: [0; 4], level: [0; 4], patch: self.patch };
-        for (k, corner) in corners.into_iter().enumerate() {
-            // Clockwise on the screen: the other way round where S_r × S_s looks at the viewer.
-            let k = if along { (4 - k) & 3 } else { k };
-            let Some((vertex, column, j)) = cell.vertex(corner) else { return };
-            quad.level[k] = self.lighting.level(vertex, along, self.first + column as u32, j);
+        for (k, corner) in order.into_iter().enumerate() {
+            let vertex = &mut *cell.corners[corner & 3];
+            quad.level[k] = self.level(vertex, corner, dark, cell.tangents, cell.at);
             (quad.x[k], quad.y[k], quad.depth[k]) = (vertex.x, vertex.y, vertex.depth);
         }
-        let warp = |[a, b, c, d]: [i32; 4]| (a - b + c - d).abs();
-        let is_bent = |q: &Quad| warp(q.level.map(i32::from)) > WARP.0 || warp(q.depth.map(i32::from)) > WARP.1;
         self.facets += 1;
-        if is_quad && is_bent(&quad) {
-            self.facets += 1;
-            self.output.facet(&quad.corners([0, 1, 2, 2]));
-            self.output.facet(&quad.corners([0, 2, 3, 3]));
-        } else {
-            self.output.facet(&quad);
-        }
+        self.output.facet(&quad);
     }
 }
 
 impl<O: Output> RowSink for Cells<'_, O> {
-    fn row(&mut self, rows: &mut Rows, j: u32, count: usize) {
+    fn row(&mut self, rows: &mut Rows, tangents: &dyn Tangents, j: u32, count: usize) {
         if j == 0 {
             return;
         }
         let [even, odd] = &mut rows.0;
         let (above, below) = if j & 1 == 1 { (even, odd) } else { (odd, even) };
-        for k in 0..count.saturating_sub(1) {
-            self.cell(Cell { above, below, k, j }, false);
+        let ends = above.iter().zip(below.iter()).next();
+        let Some((mut a, mut d)) = ends.map(|(a, d)| ([a.x, a.y], [d.x, d.y])) else { return };
+        for k in 0..count.saturating_sub(1).min(super::SEGMENTS) {
+            let (b, c) = (above[k + 1].place(), below[k + 1].place());
+            // All products are exact: corners are less than 2^15 apart.
+            let ac = minus(c, a);
+            let areas = [cross(minus(b, a), ac), cross(ac, minus(d, a))];
+            if !self.side.hides(areas) {
+                self.seen(above, below, (tangents, j, k), areas);
+            }
+            (a, d) = (b, c);
         }
         // The row before is longer by one in a triangle, unless the strip ends first.
         let form = self.lighting.form;
         let last = self.first + count as u32 - 1;
         if form.last_in_row(j) == last && form.last_in_row(j - 1) > last && count <= super::SEGMENTS {
-            self.cell(Cell { above, below, k: count - 1, j }, true);
+            self.last(above, below, (tangents, j, count - 1));
+        }
+    }
+}
+
+impl<O: Output> Cells<'_, O> {
+    /// The cell after column `k` of the strip.
+    #[inline(never)]
+    fn seen(
+        &mut self,
+        above: &mut Row,
+        below: &mut Row,
+        (tangents, j, k): (&dyn Tangents, u32, usize),
+        areas: [i32; 2],
+    ) {
+        let at = [self.first + k as u32, j];
+        if let (Some([a, b]), Some([d, c])) = (above.get_mut(k..k + 2), below.get_mut(k..k + 2)) {
+            self.cell(Cell { corners: [a, b, c, d], tangents, at }, areas, false);
+        }
+    }
+
+    /// The triangle at the end of a row of a triangular patch, after column `k` of the strip.
+    #[cold]
+    #[inline(never)]
+    fn last(&mut self, above: &mut Row, below: &mut Row, (tangents, j, k): (&dyn Tangents, u32, usize)) {
+        if let (Some([a, b]), Some(d)) = (above.get_mut(k..k + 2), below.get_mut(k)) {
+            let mut c = *d;
+            let ac = minus(c.place(), a.place());
+            let areas = [cross(minus(b.place(), a.place()), ac), 0];
+            if !self.side.hides(areas) {
+                self.cell(Cell { corners: [a, b, &mut c, d], tangents, at: [self.first + k as u32, j] }, areas, true);
+            }
         }
     }
 }

@@ -39,7 +39,7 @@ use crate::forward::{Form, Fraction, LatticeError};
 use crate::patch::SurfaceNet;
 use bicubic::Bicubic;
 use cells::{Cells, Lighting, Side};
-use vertices::{Collector, Rows, SEGMENTS};
+use vertices::{Collector, Kept, Rows, SEGMENTS};
 
 /// Fraction bits of vertices on the screen.
 const FRACTION_BITS: u32 = 8;
@@ -98,13 +98,17 @@ pub(super) fn facets<O: Output>(
     }
     // Checked with the scene, so it cannot fail here.
     let Ok(walk) = Walk::of(patch.net, patch.counts) else { return Statistics::default() };
-    let form = match &walk {
-        Walk::Bicubic(grid) => grid.form(),
-        Walk::General(plan) => plan.form,
+    let (form, is_turned) = match &walk {
+        Walk::Bicubic(grid) => (grid.form(), grid.is_turned()),
+        Walk::General(plan) => (plan.form, false),
     };
-    let lighting = Lighting { light, style, net: patch.net, form: &form };
-    let (side, window_of) = (Side::of(patch.inward), output.window());
-    let mut cells = Cells { patch: patch.index, lighting, side, output, window: window_of, first: 0, facets: 0 };
+    let lighting = Lighting { light, style, net: patch.net, form: &form, is_turned };
+    // S_s × S_r points the other way.
+    let (side, window_of) = (Side::of(patch.inward.map(|inward| inward != is_turned)), output.window());
+    let bounds = patch.net.bounds();
+    let is_wide = bounds.min.x.to_bits() >> 16 < window_of[0] || bounds.max.x.to_bits() >> 16 >= window_of[1] - 1;
+    let mut cells =
+        Cells { patch: patch.index, lighting, side, output, window: window_of, is_wide, first: 0, facets: 0 };
     let mut rows = Rows::new();
     match walk {
         Walk::Bicubic(grid) => {
@@ -114,7 +118,7 @@ pub(super) fn facets<O: Output>(
         }
         Walk::General(plan) => general(&plan, &mut rows, &mut cells, (style, window)),
     }
-    Statistics { vertices: form.point_count(), facets: cells.facets, ..Statistics::default() }
+    Statistics { vertices: form.point_count(), facets: cells.facets.into(), ..Statistics::default() }
 }
 
 /// The level of a depth in styles that need no normals.
@@ -139,8 +143,8 @@ fn general<O: Output>(
     while first < form.steps.0 {
         let columns = (first, (first + SEGMENTS as u32).min(form.steps.0));
         cells.first = first;
-        let (rows, sink) = (&mut *rows, &mut *cells);
-        plan.walk(Collector { rows, sink, style, window, fraction, form, columns });
+        let (rows, sink, kept) = (&mut *rows, &mut *cells, &mut Kept::new(first));
+        plan.walk(Collector { rows, kept, sink, style, window, fraction, form, columns });
         first = columns.1;
     }
 }

@@ -5,7 +5,7 @@ use super::super::depth::DepthWindow;
 use super::super::style::Style;
 use super::bicubic::Bicubic;
 use super::counts::Segments;
-use super::vertices::{RowSink, Rows, Vertex};
+use super::vertices::{self, RowSink, Rows, Tangents, Vertex};
 use super::{Collector, FRACTION_BITS};
 use crate::forward::{Form, Fraction};
 use crate::geometry::Point3;
@@ -19,12 +19,22 @@ use std::collections::BTreeMap;
 use std::vec::Vec;
 
 /// Keeps every vertex by its place.
-struct Keep<'k>(&'k mut BTreeMap<(u32, u32), Vertex>, u32);
+struct Keep<'k>(&'k mut Vertices, u32);
+
+/// A vertex and its tangents.
+#[derive(Clone, Copy, Debug)]
+struct Kept {
+    vertex: Vertex,
+    tangents: [[i16; 3]; 2],
+}
+
+type Vertices = BTreeMap<(u32, u32), Kept>;
 
 impl RowSink for Keep<'_> {
-    fn row(&mut self, rows: &mut Rows, j: u32, count: usize) {
+    fn row(&mut self, rows: &mut Rows, tangents: &dyn Tangents, j: u32, count: usize) {
         for (i, vertex) in rows.0[(j & 1) as usize].iter().take(count).enumerate() {
-            self.0.insert((self.1 + i as u32, j), *vertex);
+            let i = self.1 + i as u32;
+            self.0.insert((i, j), Kept { vertex: *vertex, tangents: tangents.tangents(i, j) });
         }
     }
 }
@@ -32,7 +42,7 @@ impl RowSink for Keep<'_> {
 const WINDOW: (i32, i32) = (-2000, 2000);
 
 /// The vertices by the point engine.
-fn general(net: SurfaceNet<'_>, counts: (u32, u32)) -> BTreeMap<(u32, u32), Vertex> {
+fn general(net: SurfaceNet<'_>, counts: (u32, u32)) -> Vertices {
     let plan = Plan::of(Form::surface(net, counts), true).unwrap();
     let fraction = Fraction::of(plan.budget.scale, FRACTION_BITS);
     let (mut all, mut rows, mut first) = (BTreeMap::new(), Rows::new(), 0);
@@ -40,22 +50,28 @@ fn general(net: SurfaceNet<'_>, counts: (u32, u32)) -> BTreeMap<(u32, u32), Vert
         let columns = (first, (first + 32).min(counts.0));
         let (form, window) = (&plan.form, DepthWindow::of(WINDOW.0, WINDOW.1));
         let (rows, style, sink) = (&mut rows, Style::Shaded, &mut Keep(&mut all, first));
-        plan.walk(Collector { rows, sink, style, window, fraction, form, columns });
+        let kept = &mut vertices::Kept::new(first);
+        plan.walk(Collector { rows, kept, sink, style, window, fraction, form, columns });
         first = columns.1;
     }
     all
 }
 
 /// The vertices of a bicubic patch in 32 bits.
-fn short(net: SurfaceNet<'_>, counts: (u32, u32)) -> Option<BTreeMap<(u32, u32), Vertex>> {
+fn short(net: SurfaceNet<'_>, counts: (u32, u32)) -> Option<Vertices> {
     let (mut all, mut rows) = (BTreeMap::new(), Rows::new());
     let window = DepthWindow::of(WINDOW.0, WINDOW.1);
-    Bicubic::of(net, counts)?.walk(&mut rows, &mut Keep(&mut all, 0), window, None);
-    Some(all)
+    let grid = Bicubic::of(net, counts)?;
+    grid.walk(&mut rows, &mut Keep(&mut all, 0), window, None);
+    if !grid.is_turned() {
+        return Some(all);
+    }
+    let turn = |((i, j), Kept { vertex, tangents: [r, s] })| ((j, i), Kept { vertex, tangents: [s, r] });
+    Some(all.into_iter().map(turn).collect())
 }
 
-fn place(v: &Vertex) -> [i32; 3] {
-    [v.x, v.y, v.depth.into()]
+fn place(v: &Kept) -> [i32; 3] {
+    [v.vertex.x, v.vertex.y, v.vertex.depth.into()]
 }
 
 fn points(count: usize, pixels: i32) -> impl Strategy<Value = Vec<Point3>> {
@@ -91,7 +107,7 @@ proptest! {
         prop_assert_eq!(all.len() as u64, Form::surface(net, (r, s)).point_count());
         for ((i, j), v) in &all {
             let p = reference::point(net, f64::from(*i) / f64::from(r), f64::from(*j) / f64::from(s));
-            prop_assert!(is_floor(v.x, p[0]) && is_floor(v.y, p[1]), "{v:?} for {p:?}");
+            prop_assert!(is_floor(v.vertex.x, p[0]) && is_floor(v.vertex.y, p[1]), "{v:?} for {p:?}");
         }
     }
 

@@ -49,12 +49,15 @@ pub(super) struct Vertex {
     /// The level of the side that is lit.
     pub(super) level: u8,
     pub(super) lit: Lit,
-    /// Directions of S_r and S_s, in 14 bits each.
-    pub(super) tangents: [[i16; 3]; 2],
 }
 
 impl Vertex {
-    const NONE: Self = Self { x: 0, y: 0, depth: 0, level: 0, lit: Lit::Unknown, tangents: [[0; 3]; 2] };
+    const NONE: Self = Self { x: 0, y: 0, depth: 0, level: 0, lit: Lit::Unknown };
+
+    #[inline(always)]
+    pub(super) fn place(&self) -> [i32; 2] {
+        [self.x, self.y]
+    }
 }
 
 /// Room at both ends of the depths, 1/64 of the range: what a plane through a facet may err.
@@ -65,15 +68,42 @@ pub(super) fn with_room(depth: u16) -> u16 {
     ROOM + depth - (depth >> 5)
 }
 
+/// The tangents of two rows of vertices.
+pub(super) trait Tangents {
+    /// Directions of S_r and S_s at column `i` of row `j`, in 14 bits each.
+    fn tangents(&self, i: u32, j: u32) -> [[i16; 3]; 2];
+}
+
 /// What is done with a row of vertices and the one before it.
 pub(super) trait RowSink {
     /// Row `j` is complete, with `count` vertices of the strip.
-    fn row(&mut self, rows: &mut Rows, j: u32, count: usize);
+    fn row(&mut self, rows: &mut Rows, tangents: &dyn Tangents, j: u32, count: usize);
+}
+
+/// Tangents of a strip's vertices in two rows, kept as they come: row j stands at j mod 2.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Kept {
+    rows: [[[[i16; 3]; 2]; SEGMENTS + 1]; 2],
+    first: u32,
+}
+
+impl Kept {
+    /// For the strip from column `first` on.
+    pub(super) fn new(first: u32) -> Self {
+        Self { rows: [[[[0; 3]; 2]; SEGMENTS + 1]; 2], first }
+    }
+}
+
+impl Tangents for Kept {
+    fn tangents(&self, i: u32, j: u32) -> [[i16; 3]; 2] {
+        self.rows[(j & 1) as usize].get(i.wrapping_sub(self.first) as usize).copied().unwrap_or_default()
+    }
 }
 
 /// Collects rows of vertices on a walk; with tangents in every style, so that one copy of the walks serves all.
 pub(super) struct Collector<'v> {
     pub(super) rows: &'v mut Rows,
+    pub(super) kept: &'v mut Kept,
     pub(super) sink: &'v mut dyn RowSink,
     pub(super) style: Style,
     pub(super) window: DepthWindow,
@@ -115,7 +145,7 @@ impl Collector<'_> {
 
     #[inline(never)]
     fn end_row(&mut self, i: u32, j: u32) {
-        self.sink.row(self.rows, j, (i - self.columns.0) as usize + 1);
+        self.sink.row(self.rows, self.kept, j, (i - self.columns.0) as usize + 1);
     }
 }
 
@@ -131,16 +161,18 @@ impl Visit for Collector<'_> {
         }
         let depth = self.window.depth_of_256(at.floor(2, &self.fraction));
         let (level, lit) = self.level(depth);
+        let tangents = self.tangents(at);
         let vertex = Vertex {
             x: at.floor(0, &self.fraction),
             y: at.floor(1, &self.fraction),
             depth: with_room(depth),
             level,
             lit,
-            tangents: self.tangents(at),
         };
-        if let Some(slot) = self.rows.0[(j & 1) as usize].get_mut((i - first) as usize) {
+        let (row, column) = ((j & 1) as usize, (i - first) as usize);
+        if let (Some(slot), Some(kept)) = (self.rows.0[row].get_mut(column), self.kept.rows[row].get_mut(column)) {
             *slot = vertex;
+            *kept = tangents;
         }
         if i == last.min(self.form.last_in_row(j)) {
             self.end_row(i, j);

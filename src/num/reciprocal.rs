@@ -1,0 +1,193 @@
+//! Reciprocals of 16 bits: what pictures divide by, the same bits on cores with and without a divider.
+
+/// Whether the target divides, counts leading zeros and has products of 64 bits in hardware. Of the ARM cores, those
+/// that do have atomics: ARMv7-M and later. Others take tables and shorter products, to the same results.
+const HAS_DIVIDER: bool = cfg!(any(not(target_arch = "arm"), target_has_atomic = "32"));
+
+/// ⌊2^31/d⌋ for d = 2^15 + 2^8·k + 2^7, rounded to 2^8.
+const SEEDS: [u8; 128] = {
+    let mut table = [0; 128];
+    let mut k = 0;
+    while k < 128 {
+        let d = (1 << 15) + (k << 8) + (1 << 7);
+        table[k as usize] = (((1_u32 << 31) / d + (1 << 7)) >> 8) as u8;
+        k += 1;
+    }
+    table
+};
+
+/// The leading zeros of a positive number.
+#[inline(always)]
+const fn leading_zeros(value: u32) -> u32 {
+    if HAS_DIVIDER { value.leading_zeros() } else { zeros_by_steps(value) }
+}
+
+const fn zeros_by_steps(mut value: u32) -> u32 {
+    let mut zeros = 0;
+    if value < 1 << 16 {
+        (value, zeros) = (value << 16, 16);
+    }
+    if value < 1 << 24 {
+        (value, zeros) = (value << 8, zeros + 8);
+    }
+    if value < 1 << 28 {
+        (value, zeros) = (value << 4, zeros + 4);
+    }
+    if value < 1 << 30 {
+        (value, zeros) = (value << 2, zeros + 2);
+    }
+    if value < 1 << 31 { zeros + 1 } else { zeros }
+}
+
+/// ⌊2^31/d⌋ for d of 16 bits, the first of them set; at most 2^16 − 1.
+#[inline(always)]
+const fn invert(d: u32) -> u32 {
+    if HAS_DIVIDER {
+        let quotient = match (1_u32 << 31).checked_div(d) {
+            Some(quotient) => quotient,
+            None => 0,
+        };
+        if quotient < 1 << 16 { quotient } else { (1 << 16) - 1 }
+    } else {
+        invert_by_table(d)
+    }
+}
+
+const fn invert_by_table(d: u32) -> u32 {
+    // Within 2^-8 of itself, after a step of Newton's method within 2^-15.
+    let seed = (SEEDS[(d >> 8) as usize & 127] as u32) << 8;
+    let error = (1_u32 << 31).wrapping_sub(seed.wrapping_mul(d)) as i32;
+    let mut quotient = seed.wrapping_add(((error >> 16).wrapping_mul(seed as i32) >> 15) as u32);
+    let mut rest = (1_u32 << 31).wrapping_sub(quotient.wrapping_mul(d)) as i32;
+    while rest < 0 {
+        quotient -= 1;
+        rest = rest.wrapping_add(d as i32);
+    }
+    while rest as u32 >= d {
+        quotient += 1;
+        rest = rest.wrapping_sub(d as i32);
+    }
+    if quotient < 1 << 16 { quotient } else { (1 << 16) - 1 }
+}
+
+/// 2^31 over the 16 leading bits of a positive number, rounded down, at most 2^16 − 1; and the number's leading zeros.
+#[inline(always)]
+pub(crate) const fn reciprocal(value: u32) -> (u32, u32) {
+    let zeros = leading_zeros(value);
+    (invert(value << (zeros & 31) >> 16), zeros)
+}
+
+/// ⌊a·b/2^17⌋ for b below 2^16.
+#[inline(always)]
+pub(crate) const fn multiply(a: i32, b: u32) -> i32 {
+    if HAS_DIVIDER { ((a as i64 * (b << 15) as i64) >> 32) as i32 } else { multiply_in_halves(a, b) }
+}
+
+const fn multiply_in_halves(a: i32, b: u32) -> i32 {
+    let low = (a as u32 & 0xffff).wrapping_mul(b) >> 16;
+    (a >> 16).wrapping_mul(b as i32).wrapping_add(low as i32) >> 1
+}
+
+/// 2^15 over the square roots of (k + 1/2)/256, k from 64 on, rounded.
+const ROOT_SEEDS: [u16; 192] = {
+    let mut table = [0; 192];
+    let mut k = 0;
+    while k < 192 {
+        let square = 2 * (k + 64) as u64 + 1;
+        // 2^30·512/(2k + 1), rounded to the nearest when its root is taken.
+        table[k as usize] = (4 * (1_u64 << 39) / square).isqrt().div_ceil(2) as u16;
+        k += 1;
+    }
+    table
+};
+
+/// The reciprocal square root of a positive number, 2^(15 + h)/√v within 2^-14 of itself, and h: a number of 16 bits or
+/// 2^16.
+#[inline(always)]
+pub(crate) fn reciprocal_root(value: u32) -> (u32, u32) {
+    // Even, so that a root of the shift remains.
+    let zeros = leading_zeros(value) & 30;
+    let v = value << zeros;
+    let seed = ROOT_SEEDS.get(((v >> 24) as usize).wrapping_sub(64)).map_or(1 << 15, |seed| u32::from(*seed));
+    // A step of Newton's method: y·(3 − v·y²)/2, in 2^-15, with v/2^32 in 16 bits.
+    let square = ((v >> 16) * (seed * seed >> 15)) >> 16;
+    let root = seed * ((3 * (1 << 15) - square) >> 1) >> 15;
+    (root, 16 - zeros / 2)
+}
+
+/// A factor of which upper halves of products are taken.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Factor {
+    factor: u32,
+    /// Its upper and its lower half.
+    halves: [u32; 2],
+}
+
+impl Factor {
+    pub(crate) fn new(factor: u32) -> Self {
+        // Opaque to the compiler, which would make a call for a product of 64 bits of the four short ones.
+        Self { factor, halves: core::hint::black_box([factor >> 16, factor & 0xffff]) }
+    }
+
+    /// The upper half of the product with a number.
+    #[inline(always)]
+    pub(crate) fn high(&self, a: u32) -> u32 {
+        if HAS_DIVIDER { ((u64::from(a) * u64::from(self.factor)) >> 32) as u32 } else { self.high_in_halves(a) }
+    }
+
+    #[inline(always)]
+    fn high_in_halves(&self, a: u32) -> u32 {
+        let ([b1, b0], a1, a0) = (self.halves, a >> 16, a & 0xffff);
+        // Neither sum reaches 2^32.
+        let middle = a1 * b0 + (a0 * b0 >> 16);
+        let low = a0 * b1 + (middle & 0xffff);
+        a1 * b1 + (middle >> 16) + (low >> 16)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_a_divider_it_is_the_same() {
+        for d in 1 << 15..1_u32 << 16 {
+            assert_eq!(invert_by_table(d), ((1_u32 << 31) / d).min(65_535), "{d}");
+            assert_eq!(invert(d), invert_by_table(d), "{d}");
+        }
+        for bit in 0..32 {
+            for value in [1_u32 << bit, (1_u32 << bit) + (1 << bit >> 1), (1_u32 << bit) | ((1 << bit) - 1)] {
+                assert_eq!(zeros_by_steps(value), value.leading_zeros(), "{value}");
+                assert_eq!(reciprocal(value).1, value.leading_zeros());
+            }
+        }
+    }
+
+    #[test]
+    fn roots_are_close() {
+        for value in (1..200_000_u32).chain((0..50_000).map(|k| u32::MAX - k * 85_000)) {
+            let (root, half) = reciprocal_root(value);
+            // root·√v/2^(15 + half) is 1: of its square, in 2^-32, within 2^-13.
+            let square = u128::from(root).pow(2) * u128::from(value) << 2 >> (2 * half);
+            assert!(square.abs_diff(1 << 32) < 1 << 19, "{value}: {root} {half} {square}");
+        }
+    }
+
+    #[test]
+    fn products_in_halves_are_the_same() {
+        let mut state = 1_u32;
+        let mut next = || {
+            state = state.wrapping_mul(0x915f_77f5).wrapping_add(12_345);
+            state ^ state >> 15
+        };
+        for k in 0..100_000 {
+            let (a, b) = (next(), next());
+            let (a, b) = if k % 7 == 0 { (a | 0x7fff_ffff, b | 0xffff) } else { (a, b) };
+            let factor = Factor::new(b);
+            assert_eq!(u64::from(factor.high(a)), (u64::from(a) * u64::from(b)) >> 32);
+            assert_eq!(factor.high_in_halves(a), factor.high(a));
+            assert_eq!(multiply_in_halves(a as i32, b & 0xffff), multiply(a as i32, b & 0xffff));
+            assert_eq!(i64::from(multiply(a as i32, b & 0xffff)), (i64::from(a as i32) * i64::from(b & 0xffff)) >> 17);
+        }
+    }
+}
