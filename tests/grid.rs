@@ -302,7 +302,7 @@ fn culling_leaves_out_what_is_hidden() {
     assert!(half.facets < whole.facets * 6 / 10, "{} of {} facets", half.facets, whole.facets);
     // Turned inside out, nothing in front is left.
     let flipped: Vec<_> = edges.iter().map(|e| e.flipped()).collect();
-    let inside = scene.with_cull(Cull::Back).with_topology(&flipped).unwrap();
+    let inside = scene.with_cull(Cull::Back).with_topology(&flipped).unwrap().with_fill(grid(0.5)).unwrap();
     let style = Style::DepthCued { near: 255, far: 0 };
     let depths = Scene::new(&solid, Light::default(), style).unwrap().with_topology(&flipped).unwrap();
     let (inner, _) = draw(depths.with_fill(grid(0.5)).unwrap().with_cull(Cull::Back), SCREEN);

@@ -82,7 +82,6 @@ pub struct Scene<'a, S> {
     window: DepthWindow,
     pixels: Option<PixelBox>,
     cull: Cull,
-    fill: Fill,
     topology: &'a [PatchTopology],
     segments: Option<Segments>,
 }
@@ -155,8 +154,8 @@ impl<'a, S: Surface> Scene<'a, S> {
         }
         let pixels = all.map(|b| PixelBox::of(&b));
         let window = pixels.map_or(DepthWindow::of(0, 0), |p| DepthWindow::of(p.min[2], p.max[2]));
-        let (cull, fill) = (Cull::None, Fill::Exact);
-        Self { patches, light, style, window, pixels, cull, fill, topology: &[], segments: None }
+        let cull = Cull::None;
+        Self { patches, light, style, window, pixels, cull, topology: &[], segments: None }
     }
 
     /// The same scene with these faces drawn. Culling takes part in filling and in hiding lines; lines themselves are
@@ -167,7 +166,8 @@ impl<'a, S: Surface> Scene<'a, S> {
     }
 
     /// The same scene with what is known of how its patches meet: one entry for each of
-    /// [`subdivide::topology`](crate::subdivide::topology), found once in model space.
+    /// [`subdivide::topology`](crate::subdivide::topology), found once in model space. It is filled by exact points; choose
+    /// a grid afterwards.
     ///
     /// # Errors
     /// [`RenderError::Topology`] for another number of entries.
@@ -175,8 +175,7 @@ impl<'a, S: Surface> Scene<'a, S> {
         if topology.len() != self.patches.len() {
             return Err(RenderError::Topology { patches: self.patches.len(), given: topology.len() });
         }
-        let scene = Self { topology, ..self };
-        if self.fill == Fill::Exact { Ok(scene) } else { scene.with_fill(self.fill) }
+        Ok(Self { topology, segments: None, ..self })
     }
 
     /// The same scene, filled by points or by facets. Styles of lines ignore it.
@@ -190,13 +189,13 @@ impl<'a, S: Surface> Scene<'a, S> {
     pub fn with_fill(self, fill: Fill) -> Result<Self, RenderError> {
         let Fill::Grid { tolerance } = fill else {
             self.check_exact()?;
-            return Ok(Self { fill, segments: None, ..self });
+            return Ok(Self { segments: None, ..self });
         };
         if self.topology.len() != self.patches.len() {
             return Err(RenderError::Topology { patches: self.patches.len(), given: self.topology.len() });
         }
         let segments = Segments::of(self.patches, self.topology, tolerance)?;
-        let scene = Self { fill, segments: Some(segments), ..self };
+        let scene = Self { segments: Some(segments), ..self };
         for index in 0..self.patches.len() {
             if let Some(patch) = scene.grid_patch(index) {
                 let fits = grid::check(patch.net, patch.counts);

@@ -176,7 +176,7 @@ impl<'a> Bicubic<'a> {
     }
 
     fn line(&self, axis: usize, first: usize, stride: usize) -> [i32; 4] {
-        let origin = self.origin[axis] << 8;
+        let origin = self.origin.get(axis).map_or(0, |origin| origin << 8);
         core::array::from_fn(|k| {
             let point = self.net.points().get(first + k * stride);
             point.map_or(0, |p| match axis {
@@ -210,11 +210,11 @@ impl<'a> Bicubic<'a> {
             }
             let grid = Row { put: &put, by_r, by_s, fraction_bits: self.fraction_bits };
             let mut control = [[0; 4]; 3];
-            for (axis, control) in control.iter_mut().enumerate() {
-                *control = [0, 1, 2, 3].map(|a| by_s.near(columns[axis][a].value as u32) as i32);
+            for ((control, along), [a, b, c, d]) in control.iter_mut().zip(&mut slope.along).zip(&columns) {
+                *control = [a, b, c, d].map(|column| by_s.near(column.value as u32) as i32);
                 let [b1, b2, b3] = power(*control);
                 let n_b2 = n_r.wrapping_mul(b2);
-                slope.along[axis] = [n_r.wrapping_mul(n_r).wrapping_mul(b1), n_b2.wrapping_mul(2), b3.wrapping_mul(3)];
+                *along = [n_r.wrapping_mul(n_r).wrapping_mul(b1), n_b2.wrapping_mul(2), b3.wrapping_mul(3)];
             }
             if j == 0 || j == n_s {
                 let end = if j == 0 { 0 } else { 3 };
@@ -300,31 +300,6 @@ impl Row<'_> {
         self.put.vertex::<1>(vertex, self.by_s.floor(y));
         self.put.vertex::<2>(vertex, self.by_s.floor(z));
     }
-}
-
-/// Whether no facet of a bicubic patch can look at the viewer: on the screen, every difference along r crosses every one
-/// along s with the same sign. Sides of cells are sums of such differences with positive factors.
-///
-/// Cost: at most 144 products of two vectors, where it is true; mostly a few.
-pub(super) fn faces_away(net: SurfaceNet<'_>, inward: bool) -> bool {
-    let points = net.points();
-    let (SurfaceNet::Tensor(_), (3, 3)) = (net, net.degrees()) else { return false };
-    let place = |k: usize| points.get(k).map_or([0; 2], |p| [p.x.to_bits() >> 4, p.y.to_bits() >> 4]);
-    let minus = |to: usize, from: usize| {
-        let (a, b) = (place(to), place(from));
-        [a[0] - b[0], a[1] - b[1]]
-    };
-    let along_r: [[i32; 2]; 12] = core::array::from_fn(|k| minus(k + 4, k));
-    (0..4).all(|i| {
-        (0..3).all(|j| {
-            let s = minus(4 * i + j + 1, 4 * i + j);
-            along_r.iter().all(|r| {
-                // Negative where S_r × S_s looks at the viewer. Differences have 29 bits.
-                let cross = i64::from(r[0]) * i64::from(s[1]) - i64::from(r[1]) * i64::from(s[0]);
-                if inward { cross <= 0 } else { cross >= 0 }
-            })
-        })
-    })
 }
 
 /// The level of a depth, where it does not depend on a normal.

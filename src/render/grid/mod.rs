@@ -31,6 +31,7 @@ pub(super) use counts::Segments;
 pub(super) use list::{Facets, Recorder};
 pub(super) use quad::{Filler, Quad};
 
+use super::cull::faces_away;
 use super::depth::DepthWindow;
 use super::plan::Plan;
 use super::style::Style;
@@ -93,7 +94,7 @@ pub(super) fn facets<O: Output>(
     (light, style, window): (&Light, Style, DepthWindow),
     output: &mut O,
 ) -> Statistics {
-    if patch.inward.is_some_and(|inward| bicubic::faces_away(patch.net, inward)) {
+    if patch.inward.is_some_and(|inward| faces_away(&patch.net, inward)) {
         return Statistics::default();
     }
     // Checked with the scene, so it cannot fail here.
