@@ -70,13 +70,19 @@ mod board {
         (statics - start) + (end - lowest)
     }
 
+    /// Out of line: the bytes of a row and the drawing of a band need not stand on the stack together.
+    #[inline(never)]
+    fn send(out: &mut hio::HostStream, row: &[embedded_graphics_core::pixelcolor::Rgb565]) -> bool {
+        out.write_all(&frame::ppm_row(row)).is_ok()
+    }
+
     fn run() -> Option<()> {
         let mut out = hio::hstdout().ok()?;
         out.write_all(frame::PPM_HEAD).ok()?;
         let mut sent = true;
         cortex_m::interrupt::free(|token| {
             let mut buffers = BUFFERS.borrow(token).try_borrow_mut().ok()?;
-            frame::draw(crate::GRID, &mut buffers, |row| sent &= out.write_all(&frame::ppm_row(row)).is_ok())
+            frame::draw(crate::GRID, &mut buffers, |row| sent &= send(&mut out, row))
         })?;
         writeln!(hio::hstderr().ok()?, "RAM {}", used()).ok()?;
         sent.then_some(())

@@ -40,7 +40,11 @@ fn check(fill: &str, most_ram: usize, most_flash: u64) {
     let environment = [("CARGO_PROFILE_RELEASE_OPT_LEVEL", "s"), ("FW_FRAME_FILL", fill)];
     let folder = firmware::cargo("build", target, &["--example", "fw_frame"], &environment);
     let image = folder.join("examples").join("fw_frame");
-    let (flash, _) = firmware::sizes(&std::fs::read(&image).unwrap());
+    let elf = std::fs::read(&image).unwrap();
+    let offences: Vec<_> =
+        firmware::symbols(&elf).into_iter().filter(|name| firmware::offence(name).is_some()).collect();
+    assert_eq!(offences, [""; 0], "{fill}");
+    let (flash, _) = firmware::sizes(&elf);
     let output = Command::new(&runner[0]).args(&runner[1..]).arg(&image).stdin(Stdio::null()).output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
@@ -54,6 +58,6 @@ fn check(fill: &str, most_ram: usize, most_flash: u64) {
 #[test]
 fn the_board_sends_the_hosts_picture() {
     assert_eq!(teapot::vertices().count(), 306);
-    check("exact", 32 << 10, 128 << 10);
-    check("grid", 56 << 10, 128 << 10);
+    check("exact", 32 << 10, 64 << 10);
+    check("grid", 56 << 10, 144 << 10);
 }

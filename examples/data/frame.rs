@@ -34,13 +34,19 @@ impl Buffers {
     }
 }
 
+/// The patches in the default view; out of line, so that its stack is free again when patches are drawn.
+#[inline(never)]
+fn place(patches: &mut [BicubicPatch; 32]) -> Option<()> {
+    let fit = I16F16::from_bits(60_293); // 0.92
+    let map = View::default().fit(teapot::vertices(), AREA.width, AREA.height, fit).ok()?;
+    teapot::map_into(&map, patches).ok()
+}
+
 /// Draws the default view, back faces culled; `row` gets the rows of the picture from the top. `None` if anything was
 /// refused.
 pub(crate) fn draw(grid: bool, buffers: &mut Buffers, mut row: impl FnMut(&[Rgb565])) -> Option<()> {
     let Buffers { patches, colour, depth } = buffers;
-    let fit = I16F16::from_bits(60_293); // 0.92
-    let map = View::default().fit(teapot::vertices(), AREA.width, AREA.height, fit).ok()?;
-    teapot::map_into(&map, patches).ok()?;
+    place(patches)?;
     let (light, style) = (Light::default(), Style::Shaded);
     let scene = if grid {
         Scene::grid(patches, &EDGES, I16F16::ONE, light, style).ok()?
