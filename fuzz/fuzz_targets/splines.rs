@@ -6,7 +6,7 @@ use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::graphics::BezierCurve;
 use embedded_surfaces::num::I16F16;
 use embedded_surfaces::patch::{
-    BSplineCurve, BSplineSurface, KnotVector, NurbsCurve, NurbsSurface, RationalTensor, Spline, Surface, SurfaceNet,
+    BSplineCurve, BSplineSurface, KnotVector, NurbsCurve, NurbsSurface, RationalTensor, Surface, SurfaceNet,
 };
 use embedded_surfaces::render::{Area, Fragment, Gloss, Light, Lines, Scene, Style, Tile};
 use libfuzzer_sys::fuzz_target;

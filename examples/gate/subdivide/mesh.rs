@@ -22,7 +22,7 @@ pub(crate) fn calls(sum: &mut Sum) {
     let mut table = [PatchTopology::default(); 3];
     sum.add(topology(&patches, &mut table));
     sum.add(topology(&patches, &mut table[..2]));
-    for (bits, count) in hide([(1 << 18, 3), (1 << 19, 1)]) {
+    for (bits, count) in hide([(1 << 21, 3), (1 << 19, 1)]) {
         let table = table.get(..count).unwrap_or(&table);
         let tessellation = Tolerance::new(I16F16::from_bits(bits)).and_then(|at| tessellate(&patches, table, at));
         sum.add(tessellation.as_ref().map(|_| ()).map_err(|error| *error));
@@ -49,7 +49,7 @@ fn triangles(sum: &mut Sum, tessellation: &Tessellation<'_, SurfaceNet<'_>>) {
     }
     let size = Tessellation::size(tessellation);
     sum.add([size.vertices, size.triangles, size.index]);
-    let (mut vertices, mut faces, mut index) = ([MeshVertex::BLANK; 400], [[0; 3]; 700], [0; 3000]);
+    let (mut vertices, mut faces, mut index) = ([MeshVertex::BLANK; 150], [[0; 3]; 260], [0; 600]);
     let buffers = MeshBuffers { vertices: &mut vertices[..3], triangles: &mut faces, index: &mut index };
     sum.add(Tessellation::mesh(tessellation, buffers).map(|_| ()));
     let buffers = MeshBuffers { vertices: &mut vertices, triangles: &mut faces, index: &mut index };
