@@ -16,9 +16,9 @@ const SEEDS: [u8; 128] = {
     table
 };
 
-/// The leading zeros of a positive number.
+/// The leading zeros of a positive number; of 0, 31 or 32.
 #[inline(always)]
-const fn leading_zeros(value: u32) -> u32 {
+pub(crate) const fn leading_zeros(value: u32) -> u32 {
     if HAS_DIVIDER { value.leading_zeros() } else { zeros_by_steps(value) }
 }
 

@@ -9,7 +9,7 @@
 use super::super::depth::DepthWindow;
 use super::vertices::{Lit, RowSink, Rows, SEGMENTS, Tangents, Vertex, with_room};
 use crate::forward::Form;
-use crate::num::Factor;
+use crate::num::{Factor, leading_zeros};
 use crate::patch::SurfaceNet;
 
 /// n³ times a cubic at 0, 1, …, n, by differences; the second and the third are halved.
@@ -60,7 +60,7 @@ impl Cubic {
 #[inline(always)]
 fn direction([x, y, z]: [i32; 3]) -> [i16; 3] {
     let size = (x ^ (x >> 31)) | (y ^ (y >> 31)) | (z ^ (z >> 31));
-    let shift = 18_u32.saturating_sub(size.leading_zeros());
+    let shift = 18_u32.saturating_sub(leading_zeros(size as u32));
     [(x >> shift) as i16, (y >> shift) as i16, (z >> shift) as i16]
 }
 
