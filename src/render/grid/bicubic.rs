@@ -176,7 +176,7 @@ impl<'a> Bicubic<'a> {
     }
 
     fn line(&self, axis: usize, first: usize, stride: usize) -> [i32; 4] {
-        let origin = self.origin[axis] << 8;
+        let origin = self.origin.get(axis).map_or(0, |c| c << 8);
         core::array::from_fn(|k| {
             let point = self.net.points().get(first + k * stride);
             point.map_or(0, |p| match axis {
@@ -210,11 +210,11 @@ impl<'a> Bicubic<'a> {
             }
             let grid = Row { put: &put, by_r, by_s, fraction_bits: self.fraction_bits };
             let mut control = [[0; 4]; 3];
-            for (axis, control) in control.iter_mut().enumerate() {
-                *control = [0, 1, 2, 3].map(|a| by_s.near(columns[axis][a].value as u32) as i32);
+            for ((control, along), columns) in control.iter_mut().zip(&mut slope.along).zip(&columns) {
+                *control = columns.map(|column| by_s.near(column.value as u32) as i32);
                 let [b1, b2, b3] = power(*control);
                 let n_b2 = n_r.wrapping_mul(b2);
-                slope.along[axis] = [n_r.wrapping_mul(n_r).wrapping_mul(b1), n_b2.wrapping_mul(2), b3.wrapping_mul(3)];
+                *along = [n_r.wrapping_mul(n_r).wrapping_mul(b1), n_b2.wrapping_mul(2), b3.wrapping_mul(3)];
             }
             if j == 0 || j == n_s {
                 let end = if j == 0 { 0 } else { 3 };
