@@ -16,9 +16,9 @@ const SEEDS: [u8; 128] = {
     table
 };
 
-/// The leading zeros of a positive number.
+/// The leading zeros of a positive number; of 0, 31 or 32.
 #[inline(always)]
-const fn leading_zeros(value: u32) -> u32 {
+pub(crate) const fn leading_zeros(value: u32) -> u32 {
     if HAS_DIVIDER { value.leading_zeros() } else { zeros_by_steps(value) }
 }
 
@@ -110,8 +110,8 @@ pub(crate) fn reciprocal_root(value: u32) -> (u32, u32) {
     let v = value << zeros;
     let seed = ROOT_SEEDS.get(((v >> 24) as usize).wrapping_sub(64)).map_or(1 << 15, |seed| u32::from(*seed));
     // A step of Newton's method: y·(3 − v·y²)/2, in 2^-15, with v/2^32 in 16 bits.
-    let square = ((v >> 16) * (seed * seed >> 15)) >> 16;
-    let root = seed * ((3 * (1 << 15) - square) >> 1) >> 15;
+    let square = ((v >> 16) * ((seed * seed) >> 15)) >> 16;
+    let root = (seed * ((3 * (1 << 15) - square) >> 1)) >> 15;
     (root, 16 - zeros / 2)
 }
 
@@ -139,7 +139,7 @@ impl Factor {
     fn high_in_halves(&self, a: u32) -> u32 {
         let ([b1, b0], a1, a0) = (self.halves, a >> 16, a & 0xffff);
         // Neither sum reaches 2^32.
-        let middle = a1 * b0 + (a0 * b0 >> 16);
+        let middle = a1 * b0 + ((a0 * b0) >> 16);
         let low = a0 * b1 + (middle & 0xffff);
         a1 * b1 + (middle >> 16) + (low >> 16)
     }
@@ -168,7 +168,7 @@ mod tests {
         for value in (1..200_000_u32).chain((0..50_000).map(|k| u32::MAX - k * 85_000)) {
             let (root, half) = reciprocal_root(value);
             // root·√v/2^(15 + half) is 1: of its square, in 2^-32, within 2^-13.
-            let square = u128::from(root).pow(2) * u128::from(value) << 2 >> (2 * half);
+            let square = (4 * u128::from(root).pow(2) * u128::from(value)) >> (2 * half);
             assert!(square.abs_diff(1 << 32) < 1 << 19, "{value}: {root} {half} {square}");
         }
     }

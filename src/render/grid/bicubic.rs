@@ -9,7 +9,7 @@
 use super::super::depth::DepthWindow;
 use super::vertices::{Lit, RowSink, Rows, SEGMENTS, Tangents, Vertex, with_room};
 use crate::forward::Form;
-use crate::num::Factor;
+use crate::num::{Factor, leading_zeros};
 use crate::patch::SurfaceNet;
 
 /// n³ times a cubic at 0, 1, …, n, by differences; the second and the third are halved.
@@ -60,7 +60,7 @@ impl Cubic {
 #[inline(always)]
 fn direction([x, y, z]: [i32; 3]) -> [i16; 3] {
     let size = (x ^ (x >> 31)) | (y ^ (y >> 31)) | (z ^ (z >> 31));
-    let shift = 18_u32.saturating_sub(size.leading_zeros());
+    let shift = 18_u32.saturating_sub(leading_zeros(size as u32));
     [(x >> shift) as i16, (y >> shift) as i16, (z >> shift) as i16]
 }
 
@@ -176,7 +176,7 @@ impl<'a> Bicubic<'a> {
     }
 
     fn line(&self, axis: usize, first: usize, stride: usize) -> [i32; 4] {
-        let origin = self.origin.get(axis).map_or(0, |origin| origin << 8);
+        let origin = self.origin.get(axis).map_or(0, |c| c << 8);
         core::array::from_fn(|k| {
             let point = self.net.points().get(first + k * stride);
             point.map_or(0, |p| match axis {
@@ -210,8 +210,8 @@ impl<'a> Bicubic<'a> {
             }
             let grid = Row { put: &put, by_r, by_s, fraction_bits: self.fraction_bits };
             let mut control = [[0; 4]; 3];
-            for ((control, along), [a, b, c, d]) in control.iter_mut().zip(&mut slope.along).zip(&columns) {
-                *control = [a, b, c, d].map(|column| by_s.near(column.value as u32) as i32);
+            for ((control, along), columns) in control.iter_mut().zip(&mut slope.along).zip(&columns) {
+                *control = columns.map(|column| by_s.near(column.value as u32) as i32);
                 let [b1, b2, b3] = power(*control);
                 let n_b2 = n_r.wrapping_mul(b2);
                 *along = [n_r.wrapping_mul(n_r).wrapping_mul(b1), n_b2.wrapping_mul(2), b3.wrapping_mul(3)];

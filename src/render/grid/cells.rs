@@ -75,11 +75,11 @@ impl Side {
 }
 
 /// Makes facets of the cells between two rows.
-pub(super) struct Cells<'a, O> {
+pub(super) struct Cells<'a> {
     pub(super) patch: usize,
     pub(super) lighting: Lighting<'a>,
     pub(super) side: Side,
-    pub(super) output: &'a mut O,
+    pub(super) output: &'a mut dyn Output,
     /// The output's.
     pub(super) window: [i32; 4],
     /// Whether the patch may leave its columns.
@@ -119,7 +119,7 @@ struct Cell<'r> {
     at: [u32; 2],
 }
 
-impl<O: Output> Cells<'_, O> {
+impl Cells<'_> {
     /// The level of a corner on the side that is seen; `dark` is how it is lit where that is the other side.
     #[inline(always)]
     fn level(&self, vertex: &mut Vertex, corner: usize, dark: Lit, tangents: &dyn Tangents, at: [u32; 2]) -> u8 {
@@ -219,7 +219,7 @@ impl<O: Output> Cells<'_, O> {
     }
 }
 
-impl<O: Output> RowSink for Cells<'_, O> {
+impl RowSink for Cells<'_> {
     fn row(&mut self, rows: &mut Rows, tangents: &dyn Tangents, j: u32, count: usize) {
         if j == 0 {
             return;
@@ -247,7 +247,7 @@ impl<O: Output> RowSink for Cells<'_, O> {
     }
 }
 
-impl<O: Output> Cells<'_, O> {
+impl Cells<'_> {
     /// The cell after column `k` of the strip.
     #[inline(never)]
     fn seen(

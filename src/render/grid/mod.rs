@@ -88,11 +88,12 @@ pub(super) struct Patch<'a> {
 
 /// Sends the facets of a patch that meet the output's window to it.
 ///
-/// Stack: 1.6 KB for two rows of 33 vertices, and 1.6 KB for the walk over a bicubic patch or what the point engine takes.
-pub(super) fn facets<O: Output>(
+/// Stack: 1.2 KB, of them 0.8 for two rows of 33 vertices, and 0.9 KB for the walk over a bicubic patch, or 1.1 KB and
+/// what the point engine takes.
+pub(super) fn facets(
     patch: &Patch<'_>,
     (light, style, window): (&Light, Style, DepthWindow),
-    output: &mut O,
+    output: &mut dyn Output,
 ) -> Statistics {
     if patch.inward.is_some_and(|inward| faces_away(&patch.net, inward)) {
         return Statistics::default();
@@ -132,12 +133,7 @@ fn level_of(style: Style, window: DepthWindow, depth: u16) -> u8 {
 
 /// Walks a grid by the point engine, a strip of columns at a time.
 #[inline(never)]
-fn general<O: Output>(
-    plan: &Plan<'_>,
-    rows: &mut Rows,
-    cells: &mut Cells<'_, O>,
-    (style, window): (Style, DepthWindow),
-) {
+fn general(plan: &Plan<'_>, rows: &mut Rows, cells: &mut Cells<'_>, (style, window): (Style, DepthWindow)) {
     let fraction = Fraction::of(plan.budget.scale, FRACTION_BITS);
     let form = &plan.form;
     let mut first = 0;
