@@ -1,7 +1,8 @@
 //! The gate on all four targets: `examples/fw_gate.rs` calls every public operation, gives the host's results bit for
 //! bit, holds no panic, soft float or allocator, and costs what `tests/budgets.txt` says.
 //!
-//! With `FIRMWARE_GATE=1` or `UPDATE_BUDGETS=1`: the images take minutes to build.
+//! Always for size with every feature; with `FIRMWARE_GATE=1` or `UPDATE_BUDGETS=1` also for speed and with fewer
+//! features: those images take minutes to build.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 #[path = "common/budgets.rs"]
@@ -27,9 +28,7 @@ const EXCEPTIONS: [(&str, &str); 0] = [];
 
 #[test]
 fn for_size_with_every_feature() {
-    if is_thorough() {
-        check("s", "styled");
-    }
+    check("s", "styled");
 }
 
 #[test]
