@@ -33,8 +33,7 @@ macro_rules! with_walker {
         let (form, budget): (&Form<'_>, &Budget) = ($form, $budget);
         macro_rules! run {
             ($name:ident, $room:literal, $kernel:expr) => {{
-                #[allow(unused_mut)]
-                let mut $walker = Walker::<_, $room>::new($kernel, form, budget);
+                let $walker = Walker::<_, $room>::new($kernel, form, budget);
                 #[allow(unused_imports)]
                 use Engine::$name as $variant;
                 $body
@@ -42,8 +41,7 @@ macro_rules! with_walker {
         }
         macro_rules! run_quotient {
             ($name:ident, $word:ty, $room:literal) => {{
-                #[allow(unused_mut)]
-                let mut $walker = QuotientWalker::<$word, $room>::new(form, budget);
+                let $walker = QuotientWalker::<$word, $room>::new(form, budget);
                 #[allow(unused_imports)]
                 use Engine::$name as $variant;
                 $body
@@ -150,9 +148,9 @@ impl Engine {
         each_engine!(self, walker => walker.remaining())
     }
 
-    pub(super) fn fold<B>(mut self, state: B, f: impl FnMut(B, LatticePoint) -> B) -> B {
+    pub(super) fn fold<B>(self, state: B, f: impl FnMut(B, LatticePoint) -> B) -> B {
         let fold = Fold { state, f };
-        each_engine!(&mut self, walker => walker.visit(fold).state)
+        each_engine!(self, walker => walker.run(fold).state)
     }
 }
 
@@ -160,5 +158,5 @@ impl Engine {
 #[inline]
 pub(super) fn walk<B>(form: &Form<'_>, budget: &Budget, state: B, f: impl FnMut(B, LatticePoint) -> B) -> B {
     let fold = Fold { state, f };
-    with_walker!(form, budget, |walker, Variant| walker.visit(fold).state)
+    with_walker!(form, budget, |walker, Variant| walker.run(fold).state)
 }

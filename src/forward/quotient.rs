@@ -268,6 +268,12 @@ impl<W: Word, const R: usize> QuotientWalker<W, R> {
         }
     }
 
+    /// [`visit`](Self::visit) of a walk that is given away: nothing else sees it, so it can live in registers.
+    #[inline(always)]
+    pub(crate) fn run<V: Visit>(mut self, visitor: V) -> V {
+        self.visit(visitor)
+    }
+
     /// Visits what is left of the lattice.
     #[inline]
     pub(crate) fn visit<V: Visit>(&mut self, mut visitor: V) -> V {

@@ -184,6 +184,12 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
         }
     }
 
+    /// [`visit`](Self::visit) of a walk that is given away: nothing else sees it, so it can live in registers.
+    #[inline(always)]
+    pub(crate) fn run<V: Visit>(mut self, visitor: V) -> V {
+        self.visit(visitor)
+    }
+
     /// Visits what is left of the lattice.
     #[inline(always)]
     pub(crate) fn visit<V: Visit>(&mut self, mut visitor: V) -> V {
