@@ -6,7 +6,6 @@
 #[allow(dead_code)]
 mod budgets;
 #[path = "common/firmware.rs"]
-#[allow(dead_code)]
 mod firmware;
 #[path = "../examples/fw_bench.rs"]
 #[allow(dead_code, reason = "its `main` is for `cargo run`")]

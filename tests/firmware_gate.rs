@@ -8,7 +8,6 @@
 #[path = "common/budgets.rs"]
 mod budgets;
 #[path = "common/firmware.rs"]
-#[allow(dead_code)]
 mod firmware;
 #[path = "../examples/fw_gate.rs"]
 #[allow(dead_code, reason = "its `main` is for `cargo run`")]
