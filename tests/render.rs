@@ -239,3 +239,22 @@ fn what_cannot_be_drawn_is_a_typed_error() {
     assert!(matches!(error, RenderError::Patch { index: 1, error: LatticeError::Budget { degrees: (8, 8), .. } }));
     assert!(error.to_string().starts_with("patch 1: degrees (8, 8) at "), "{error}");
 }
+
+/// A patch of high degree that only fits after it was quartered often: all of a window in its middle is covered.
+#[test]
+fn large_patches_of_high_degree_have_no_hole() {
+    for (m, h, width) in [(8, 8, 1000), (8, 8, 8000), (8, 5, 12_000), (6, 8, 4000), (4, 7, 20_000)] {
+        let place = |k: i32, n: i32| (i64::from(2 * k - n) * width * 32_768 / i64::from(n) + 12_345) as i32;
+        let points: Vec<_> = (0..(m + 1) * (h + 1))
+            .map(|k| Point3::from_bits(place(k / (h + 1), m), place(k % (h + 1), h), (k * 977) % 400_000))
+            .collect();
+        let net = SurfaceNet::Tensor(TensorNet::new((m as usize, h as usize), &points).unwrap());
+        let scene = Scene::new(core::slice::from_ref(&net), Light::default(), Style::Flat).unwrap();
+        let area = Area { x: -20, y: 7, width: 64, height: 48 };
+        let (mut colour, mut depth) = (vec![0_u8; area.pixels()], vec![0; area.pixels()]);
+        let mut tile = Tile::new(area, &mut colour, &mut depth, 0).unwrap();
+        scene.draw(&mut tile, &|_| 1);
+        let missed = tile.pixels().iter().filter(|pixel| **pixel == 0).count();
+        assert_eq!(missed, 0, "degrees ({m}, {h}), {width} pixels wide");
+    }
+}

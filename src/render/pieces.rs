@@ -179,13 +179,16 @@ impl Tree<'_, '_> {
         let (triangles, rational) =
             (S::SHAPE.triangles && piece.is_triangle(), S::SHAPE.rational && piece.weights().is_some());
         let direct = !triangles && !rational;
-        if depth < deepest && direct && slopes.least_points() > LARGEST {
+        // Up to degree 3 any legal net fits 128 bits: (n_r·n_s)^3·2^7·(2K+1) with n below 2^19.
+        let fits_always = direct && S::SHAPE.degree.min(degree(&piece)) <= 3;
+        if depth < deepest && fits_always && slopes.least_points() > LARGEST {
             return Some(longer(piece));
         }
         let sampling = slopes.sampling::<S>(piece, true);
         let split = if depth == deepest {
             None
-        } else if (piece.degrees() != (3, 3) || !direct) && !fits::<S>(piece, sampling) {
+        } else if !fits_always && !fits::<S>(piece, sampling) {
+            // Both directions at once: what the check of the scene counts on.
             Some(if triangles { Split::Triangles } else { Split::Squares })
         } else if direct {
             (sampling.points(false) > LARGEST).then(|| longer(piece))
@@ -239,6 +242,12 @@ impl Tree<'_, '_> {
         }
         false
     }
+}
+
+/// The larger degree of a piece.
+fn degree(piece: &SurfaceNet<'_>) -> usize {
+    let (m, h) = piece.degrees();
+    m.max(h)
 }
 
 /// A piece, and what its parts are cut from.
