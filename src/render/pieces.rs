@@ -128,14 +128,14 @@ enum Split {
 
 impl Split {
     /// Part number `index`; `None` after the last.
-    fn part(self, index: usize) -> Option<Cut> {
+    fn part(self, index: u8) -> Option<Cut> {
         let half = |second: bool| if second { Half::Second } else { Half::First };
         match self {
             Self::R | Self::S if index >= 2 => None,
             Self::R => Some(Cut::Half(Direction::R, half(index == 1))),
             Self::S => Some(Cut::Half(Direction::S, half(index == 1))),
             Self::Squares => (index < 4).then(|| Cut::Tensor(half(index >= 2), half(index % 2 == 1))),
-            Self::Triangles => Quarter::ALL.get(index).map(|quarter| Cut::Triangle(*quarter)),
+            Self::Triangles => Quarter::ALL.get(usize::from(index)).map(|quarter| Cut::Triangle(*quarter)),
         }
     }
 }
@@ -148,7 +148,7 @@ struct Tree<'n, 's> {
     len: usize,
     weight_len: usize,
     /// How each was split, and which part is on the way.
-    path: [(Split, usize); DEPTH],
+    path: [(Split, u8); DEPTH],
     depth: usize,
     deepest: usize,
 }
@@ -180,7 +180,7 @@ impl Tree<'_, '_> {
             (S::SHAPE.triangles && piece.is_triangle(), S::SHAPE.rational && piece.weights().is_some());
         let direct = !triangles && !rational;
         // Up to degree 3 any legal net fits 128 bits: (n_r·n_s)^3·2^7·(2K+1) with n below 2^19.
-        let fits_always = direct && S::SHAPE.degree.min(degree(&piece)) <= 3;
+        let fits_always = direct && (S::SHAPE.degree <= 3 || degree(&piece) <= 3);
         if depth < deepest && fits_always && slopes.least_points() > LARGEST {
             return Some(longer(piece));
         }
