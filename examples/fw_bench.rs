@@ -1,4 +1,9 @@
-//! Instructions a point under QEMU, exactly: `cargo run --release --target thumbv7em-none-eabihf --example fw_bench`.
+//! Instructions a point under QEMU, exactly. The image takes more than the 256 KB of `memory.x`:
+//!
+//! ```sh
+//! cargo run --release --target thumbv7em-none-eabihf --example fw_bench \
+//!     --config 'target.thumbv7em-none-eabihf.rustflags=["-Clink-arg=--defsym=_flash_of_mps2=1"]'
+//! ```
 //!
 //! A line per row: `name: N instructions, P points, sum S`. The sink of all rows is the wrapping sum of the coordinates.
 //! `tests/firmware_bench.rs` compares the counts with `tests/budgets.txt` and the sums with the host's.

@@ -1,5 +1,5 @@
-//! Instructions under QEMU against `tests/budgets.txt`, compared exactly: `examples/fw_bench.rs` for v6-M code, M4 and
-//! RV32. Prints the table of instructions a point: `cargo test --test firmware_bench -- --nocapture`.
+//! Instructions under QEMU against `tests/budgets.txt`, compared exactly: `examples/fw_bench.rs` and `fw_cost.rs` for v6-M
+//! code, M4 and RV32. Prints the tables of instructions a point: `cargo test --test firmware_bench -- --nocapture`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 #[path = "common/budgets.rs"]
@@ -10,10 +10,13 @@ mod firmware;
 #[path = "../examples/fw_bench.rs"]
 #[allow(dead_code, reason = "its `main` is for `cargo run`")]
 mod fw_bench;
+#[path = "../examples/fw_cost.rs"]
+#[allow(dead_code, reason = "its `main` is for `cargo run`")]
+mod fw_cost;
 
-use firmware::{ROOT, cargo_build_all, run, runner, skip, target_is_installed};
+use firmware::{cargo_build_all, program_is_installed, run, runner_of, skip, target_is_installed};
+use fw_cost::{frame, teapot};
 use std::path::Path;
-use std::process::Command;
 
 const TARGETS: [(&str, &str); 3] =
     [("M0", "thumbv6m-none-eabi"), ("M4", "thumbv7em-none-eabihf"), ("RV32", "riscv32imc-unknown-none-elf")];
@@ -40,40 +43,55 @@ fn parse(report: &str) -> Vec<Row> {
 
 #[test]
 fn instructions_are_as_budgeted() {
+    let mut host = String::new();
+    fw_bench::report(&mut host).unwrap();
+    let columns = check("fw_bench", &parse(&host));
+    for (short, rows) in columns {
+        // A call and a return, and what the counter is off.
+        assert!((1000..=1006).contains(&rows[0].instructions), "{short}: the counter says {:?}", rows[0]);
+    }
+}
+
+#[test]
+fn a_frame_takes_what_is_budgeted() {
+    assert_eq!((teapot::vertices().count(), frame::BAND), (306, 320 * 16));
+    let mut host = String::new();
+    fw_cost::report(&mut host).unwrap();
+    check("fw_cost", &parse(&host));
+}
+
+/// Runs an example on all targets: the same points and sums as here, and the instructions that are budgeted. Returns
+/// each target's rows.
+fn check(example: &str, host: &[Row]) -> Vec<(&'static str, Vec<Row>)> {
     let installed: Vec<_> = TARGETS.into_iter().filter(|(_, target)| target_is_installed(target)).collect();
     for (_, target) in TARGETS.iter().filter(|row| !installed.contains(row)) {
         skip(target, &format!("the Rust target (rustup target add {target})"));
     }
     let targets: Vec<_> = installed.iter().map(|(_, target)| *target).collect();
-    let folder = cargo_build_all(&targets, "bench", &["--example", "fw_bench"]);
-    let mut host = String::new();
-    fw_bench::report(&mut host).unwrap();
-    let host = parse(&host);
+    let folder = cargo_build_all(&targets, example, &["--example", example]);
     let mut columns = Vec::new();
     for (short, target) in installed {
-        let Some(rows) = rows(target, &folder) else { continue };
-        for (there, here) in rows.iter().zip(&host) {
+        let Some(rows) = rows(target, &folder, example) else { continue };
+        for (there, here) in rows.iter().zip(host) {
             assert_eq!((&there.name, there.points, there.sum), (&here.name, here.points, here.sum), "{target}");
         }
         assert_eq!(rows.len(), host.len());
-        // A call and a return, and what the counter is off.
-        assert!((1000..=1006).contains(&rows[0].instructions), "{target}: the counter says {:?}", rows[0]);
         let measured: Vec<_> =
             rows.iter().map(|row| (format!("instructions, {}", row.name), row.instructions)).collect();
-        budgets::check(&format!("fw_bench, {target}"), &measured);
+        budgets::check(&format!("{example}, {target}"), &measured);
         columns.push((short, rows));
     }
-    print_table(&host, &columns);
+    print_table(host, &columns);
+    columns
 }
 
-fn rows(target: &str, folder: &Path) -> Option<Vec<Row>> {
-    let config = std::fs::read_to_string(Path::new(ROOT).join(".cargo/config.toml")).unwrap();
-    let runner = runner(&config, target);
-    if Command::new(&runner[0]).arg("--version").output().is_err() {
+fn rows(target: &str, folder: &Path, example: &str) -> Option<Vec<Row>> {
+    let runner = runner_of(target);
+    if !program_is_installed(&runner[0]) {
         skip(target, &runner[0]);
         return None;
     }
-    Some(parse(&run(&runner, &folder.join(target).join("release/examples/fw_bench"))))
+    Some(parse(&run(&runner, &folder.join(target).join("release/examples").join(example))))
 }
 
 fn print_table(rows: &[Row], columns: &[(&str, Vec<Row>)]) {
