@@ -1,6 +1,7 @@
 //! A log by `defmt`: nets, plans, errors, scenes and statistics, as bytes whose text stays on the host.
 //!
 //! ```text
+//! export CARGO_PROFILE_RELEASE_OPT_LEVEL=s # at level 3 it exceeds the 256 KB of memory.x
 //! DEFMT_LOG=info cargo rustc --release --target thumbv7em-none-eabihf --features defmt --example fw_defmt -- \
 //!     -C link-arg=-Tdefmt.x
 //! qemu-system-arm -machine mps2-an386 -nographic -monitor none -serial null \

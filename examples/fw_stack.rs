@@ -1,16 +1,17 @@
 //! How much stack `Scene::draw` takes for patches of every kind: firmware that paints its stack, draws, and looks how
 //! far down the paint is gone.
 //!
-//! `cargo run --release --target thumbv7em-none-eabihf --example fw_stack` prints a line for each patch, and what
-//! [`stack_bytes`](embedded_surfaces::render::stack_bytes) says; `tests/firmware_stack.rs` compares the two.
+//! `CARGO_PROFILE_RELEASE_OPT_LEVEL=s cargo run --release --target thumbv7em-none-eabihf --example fw_stack` prints a
+//! line for each patch, and what [`stack_bytes`](embedded_surfaces::render::stack_bytes) says; at level 3 the image
+//! exceeds the 256 KB of `memory.x`. `tests/firmware_stack.rs` compares the two.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(not(target_os = "none"))]
 fn main() {}
 
 #[cfg(all(target_os = "none", target_arch = "arm"))]
-#[path = "board/qemu.rs"]
-mod qemu;
+#[path = "board/run.rs"]
+mod run;
 
 #[cfg(all(target_os = "none", target_arch = "arm"))]
 pub(crate) use firmware::report;

@@ -2,16 +2,15 @@
 //! while the other is sent.
 //!
 //! `cargo run --example mipidsi` prints what went over the wires to a mock of an ILI9341, 320 × 240 pixels in 16 bits;
-//! `cargo run --release --target thumbv7em-none-eabihf --example mipidsi` does the same under QEMU. For a display of
-//! your own, put `mipidsi`'s `SpiInterface` or `ParallelInterface` in the place of [`Mock`], and what your chip does
+//! `cargo run --release --target thumbv7em-none-eabihf --example mipidsi` does the same under QEMU (for size, with
+//! `CARGO_PROFILE_RELEASE_OPT_LEVEL=s`, or it exceeds the 256 KB of `memory.x`). For a display of your own, put `mipidsi`'s `SpiInterface` or `ParallelInterface` in the place of [`Mock`], and what your chip does
 //! beside its processor (DMA, a second core) into [`join`].
 //!
 //! `tests/mipidsi.rs` obeys the recorded commands and compares with a picture drawn at once.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-#[cfg(target_os = "none")]
-#[path = "board/qemu.rs"]
-mod qemu;
+#[path = "board/run.rs"]
+mod board;
 #[path = "data/teapot.rs"]
 pub(crate) mod teapot;
 
@@ -178,9 +177,5 @@ pub(crate) fn report(out: &mut impl core::fmt::Write) -> core::fmt::Result {
 
 #[cfg(not(target_os = "none"))]
 fn main() {
-    let mut line = String::new();
-    match report(&mut line) {
-        Ok(()) => print!("{line}"),
-        Err(_) => std::process::exit(1),
-    }
+    board::on_host();
 }

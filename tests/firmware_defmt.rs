@@ -27,7 +27,7 @@ fn check(target: &str) {
     }
     // The format strings are sections that only this linker script keeps.
     let what = ["--features", "defmt", "--example", "fw_defmt", "--", "-C", "link-arg=-Tdefmt.x"];
-    let folder = firmware::cargo("rustc", target, &what, &[]);
+    let folder = firmware::cargo("rustc", target, &what, &[firmware::FOR_SIZE]);
     let image = folder.join("examples/fw_defmt");
     let runner = firmware::runner_of(target);
     if !firmware::program_is_installed(&runner[0]) {

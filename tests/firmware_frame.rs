@@ -37,7 +37,7 @@ fn check(fill: &str, most_ram: usize, most_flash: u64) {
     if !firmware::program_is_installed(&runner[0]) {
         return firmware::skip(target, &runner[0]);
     }
-    let environment = [("CARGO_PROFILE_RELEASE_OPT_LEVEL", "s"), ("FW_FRAME_FILL", fill)];
+    let environment = [firmware::FOR_SIZE, ("FW_FRAME_FILL", fill)];
     let folder = firmware::cargo("build", target, &["--example", "fw_frame"], &environment);
     let image = folder.join("examples").join("fw_frame");
     let elf = std::fs::read(&image).unwrap();

@@ -44,7 +44,7 @@ fn the_panel_shows_what_the_host_draws() {
         return firmware::skip(TARGET, &format!("the Rust target (rustup target add {TARGET})"));
     }
     // At the default level 3 the renderer alone is larger than the flash.
-    let small = [("CARGO_PROFILE_RELEASE_OPT_LEVEL", "s")];
+    let small = [firmware::FOR_SIZE];
     let image = firmware::cargo("build", TARGET, &["--example", "fw_oled"], &small).join("examples/fw_oled");
     let elf = std::fs::read(&image).unwrap();
     let (flash, statics) = firmware::sizes(&elf);

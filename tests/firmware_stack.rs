@@ -14,9 +14,7 @@ fn drawing_stays_within_the_stack_that_is_promised() {
     if !firmware::program_is_installed(&runner[0]) {
         return firmware::skip(target, &runner[0]);
     }
-    // At level 3 the renderer does not fit the flash of memory.x.
-    let level = [("CARGO_PROFILE_RELEASE_OPT_LEVEL", "s")];
-    let folder = firmware::cargo("build", target, &["--example", "fw_stack"], &level);
+    let folder = firmware::cargo("build", target, &["--example", "fw_stack"], &[firmware::FOR_SIZE]);
     let said = firmware::run(&runner, &folder.join("examples/fw_stack"));
     println!("{said}");
     assert_eq!(said.lines().count(), 9);

@@ -84,7 +84,8 @@ fn firmware_sends_the_same(target: &str) {
     if !firmware::target_is_installed(target) {
         return firmware::skip(target, &format!("the Rust target (rustup target add {target})"));
     }
-    let image = firmware::cargo_build(target, &["--example", "mipidsi"]).join("examples/mipidsi");
+    let image =
+        firmware::cargo("build", target, &["--example", "mipidsi"], &[firmware::FOR_SIZE]).join("examples/mipidsi");
     let runner = firmware::runner_of(target);
     if !firmware::program_is_installed(&runner[0]) {
         return firmware::skip(target, &runner[0]);

@@ -35,6 +35,9 @@ pub(crate) fn program_is_installed(program: &str) -> bool {
     Command::new(program).arg("--version").output().is_ok()
 }
 
+/// What has the renderer fit the 256 KB of `memory.x`: at level 3 it does not.
+pub(crate) const FOR_SIZE: (&str, &str) = ("CARGO_PROFILE_RELEASE_OPT_LEVEL", "s");
+
 /// Runs `cargo build --release` and returns the folder with the results.
 pub(crate) fn cargo_build(target: &str, what: &[&str]) -> PathBuf {
     cargo("build", target, what, &[])
@@ -67,12 +70,17 @@ pub(crate) fn cargo(command: &str, target: &str, what: &[&str], environment: &[(
 pub(crate) const TARGETS: [&str; 4] =
     ["thumbv6m-none-eabi", "thumbv7m-none-eabi", "thumbv7em-none-eabihf", "riscv32imc-unknown-none-elf"];
 
-/// Runs `cargo build --release` for some targets at once, in the target directory of this name; returns it.
+/// Runs `cargo build --release` for some targets at once, in the target directory of this name; returns it. The images
+/// may take the 4 MB of flash of QEMU's mps2 machines.
 pub(crate) fn cargo_build_all(targets: &[&str], folder: &str, what: &[&str]) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(ROOT).args(["build", "--release", "--locked", "--quiet"]);
     cargo.args(targets.iter().flat_map(|target| ["--target", target]));
+    for target in targets.iter().filter(|target| target.starts_with("thumb")) {
+        let flag = "-Clink-arg=--defsym=_flash_of_mps2=1"; // see memory.x
+        cargo.arg("--config").arg(format!("target.{target}.rustflags=[\"{flag}\"]"));
+    }
     cargo.args(what).arg("--target-dir").arg(&folder);
     for variable in ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "CARGO_BUILD_RUSTFLAGS", "CARGO_BUILD_TARGET"] {
         cargo.env_remove(variable);
