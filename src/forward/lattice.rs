@@ -40,9 +40,9 @@ pub enum RowStep {
 ///   3·m additions a point (m: degree in the first direction).
 /// * [`points`](Self::points): the same as an iterator; `fold` and `for_each` on it are the fast path too.
 ///
-/// Stack: 3·(d+1)²·w/8 bytes plus 6·(d+1)·w/8, with d the larger degree rounded up to 3, 5 or 8 and w the
-/// accumulator's bits: 0.6 KB for bicubics in `i64`, 4.8 KB at most; a third more for rational nets, and 0.8 KB for
-/// the lanes of 64-bit hosts.
+/// State of a walk, on the stack (computed; what the compiler spills comes on top): 3·(d+1)²·w/8 bytes plus
+/// 6·(d+1)·w/8, with d the larger degree rounded up to 3, 5 or 8 and w the accumulator's bits, so 0.6 KB for bicubics
+/// in `i64` and 4.8 KB at most; a third more for rational nets, and 0.8 KB for the lanes of 64-bit hosts.
 ///
 /// ```
 /// use embedded_surfaces::forward::{Lattice, Steps};

@@ -22,8 +22,8 @@
 //! patches, whatever their step counts, because counts have 1/128 in hand.
 //!
 //! # Pieces
-//! One step count for a whole patch wastes points: the teapot takes 6.7 a pixel so. A patch is split at midpoints
-//! ([`subdivide`](crate::subdivide)) until a piece has at most 300 points; a triangle or a rational patch while its parts
+//! One step count for a whole patch wastes points where it is short, turned away or out of sight. A patch is split at
+//! midpoints ([`subdivide`](crate::subdivide)) until a piece has at most 300 points; a triangle or a rational patch while its parts
 //! cost less than it does. No list is kept: pieces are walked depth first on a fixed stack ([`stack_bytes`]).
 //!
 //! | teapot, default view | points | points a pixel | pieces |

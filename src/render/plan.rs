@@ -51,13 +51,13 @@ impl<'a> Plan<'a> {
     /// Walks the lattice with any visitor, which may want tangents.
     pub(super) fn walk<V: Visit>(&self, visitor: V) {
         match (self.width, self.form.weights().is_some()) {
-            // For pieces only.
-            (Width::Cubic32, _) => {}
-            (Width::Cubic64, false) => run::<_, _, 4>(Residual::<i64>::of(&self.budget), self, visitor),
+            (Width::Cubic32 | Width::Cubic64, false) => {
+                run::<_, _, 4>(Residual::<i64>::of(&self.budget), self, visitor)
+            }
             (Width::Quintic64, false) => run::<_, _, 6>(Residual::<i64>::of(&self.budget), self, visitor),
             (Width::Full64, false) => run::<_, _, 9>(Residual::<i64>::of(&self.budget), self, visitor),
             (Width::Full128, false) => run::<_, _, 9>(Residual::<i128>::of(&self.budget), self, visitor),
-            (Width::Cubic64, true) => run_quotient::<i64, _, 4>(self, visitor),
+            (Width::Cubic32 | Width::Cubic64, true) => run_quotient::<i64, _, 4>(self, visitor),
             (_, true) => run_quotient::<i128, _, 9>(self, visitor),
         }
     }
