@@ -3,6 +3,8 @@
 //! CI compares the files byte for byte; `UPDATE_DOCS=1 cargo test --test docs` embeds them in the docs.
 #![allow(clippy::disallowed_types, clippy::float_arithmetic, reason = "host-side figures")]
 
+#[path = "data/command.rs"]
+mod command;
 #[path = "data/convergence.rs"]
 mod convergence;
 #[path = "data/draw.rs"]
@@ -31,6 +33,7 @@ use embedded_surfaces::patch::{
 use embedded_surfaces::render::{Area, Fragment, Gloss, Light, Lines, Scene, Style};
 use std::error::Error;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 /// Draw every picture of the docs.
 #[derive(Parser)]
@@ -46,25 +49,28 @@ const BACKGROUND: Rgb888 = Rgb888::new(24, 28, 44);
 const CLAY: Rgb888 = Rgb888::new(236, 196, 140);
 const SCREEN: Area = Area { x: 0, y: 0, width: 320, height: 240 };
 
-fn main() -> Outcome {
-    let folder = Arguments::parse().output;
-    std::fs::create_dir_all(&folder)?;
+fn main() -> ExitCode {
+    command::end(run(&Arguments::parse().output))
+}
+
+fn run(folder: &Path) -> Outcome {
+    std::fs::create_dir_all(folder)?;
     let pot = pot(SCREEN, View::default())?;
-    single(&folder, "teapot", &pot, &Material { colour: CLAY }, BACKGROUND)?;
-    single(&folder, "teapot_1_bit", &pot, &Material { colour: BinaryColor::On }, BinaryColor::Off)?;
-    single(&folder, "teapot_4_greys", &pot, &Material { colour: Gray2::WHITE }, Gray2::BLACK)?;
-    perspective(&folder)?;
-    oled(&folder)?;
-    seed_patches(&folder)?;
-    styles(&folder)?;
-    shapes(&folder)?;
-    curves(&folder)?;
-    save(&folder, "convergence", &convergence::draw(BACKGROUND)?)
+    single(folder, "teapot", &pot, &Material { colour: CLAY }, BACKGROUND)?;
+    single(folder, "teapot_1_bit", &pot, &Material { colour: BinaryColor::On }, BinaryColor::Off)?;
+    single(folder, "teapot_4_greys", &pot, &Material { colour: Gray2::WHITE }, Gray2::BLACK)?;
+    perspective(folder)?;
+    oled(folder)?;
+    seed_patches(folder)?;
+    styles(folder)?;
+    shapes(folder)?;
+    curves(folder)?;
+    save(folder, "convergence", &convergence::draw(BACKGROUND)?)
 }
 
 fn save<C: PixelColor + Into<Rgb888>>(folder: &Path, name: &str, display: &SimulatorDisplay<C>) -> Outcome {
     let path = folder.join(name).with_extension("png");
-    display.to_rgb_output_image(&OutputSettings::default()).save_png(&path)?;
+    command::save_png(display, &OutputSettings::default(), &path)?;
     println!("{}", path.display());
     Ok(())
 }
@@ -118,7 +124,7 @@ fn oled(folder: &Path) -> Outcome {
             .map_err(|fault| format!("{fault:?}"))?;
     }
     let path = folder.join("oled.png");
-    display.to_rgb_output_image(&OutputSettingsBuilder::new().scale(2).build()).save_png(&path)?;
+    command::save_png(&display, &OutputSettingsBuilder::new().scale(2).build(), &path)?;
     println!("{}", path.display());
     Ok(())
 }

@@ -4,6 +4,8 @@
 //! `cargo run --release --example seed_patches -- -o seed_patches.png`
 #![allow(clippy::disallowed_types, clippy::float_arithmetic, reason = "host-side figures")]
 
+#[path = "data/command.rs"]
+mod command;
 #[path = "data/draw.rs"]
 mod draw;
 #[path = "data/seed.rs"]
@@ -20,6 +22,7 @@ use embedded_surfaces::reference::Audit;
 use embedded_surfaces::render::{Fragment, Light, Scene, Style};
 use std::error::Error;
 use std::path::PathBuf;
+use std::process::ExitCode;
 
 /// Draw the two patches of the paper in two views.
 #[derive(Parser)]
@@ -31,8 +34,11 @@ struct Arguments {
 
 const BACKGROUND: Rgb888 = Rgb888::new(24, 28, 44);
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let arguments = Arguments::parse();
+fn main() -> ExitCode {
+    command::end(run(&Arguments::parse()))
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let mut display = draw::blank(seed::AREA, BACKGROUND);
     println!("{}: {} x {}", arguments.output.display(), seed::AREA.width, seed::AREA.height);
     let patches = seed::both_views()?;
@@ -43,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         |at: Fragment| seed::COLOURS.get(at.patch % 2).map_or(Rgb888::WHITE, |c| c.shaded(at.shade, at.x, at.y));
     let scene = Scene::new(&patches, Light::default(), Style::Shaded)?;
     draw::in_bands(&mut display, scene, (&paint, BACKGROUND), (seed::AREA, 16), |_| ())?;
-    display.to_rgb_output_image(&OutputSettings::default()).save_png(&arguments.output)?;
+    command::save_png(&display, &OutputSettings::default(), &arguments.output)?;
     Ok(())
 }
 

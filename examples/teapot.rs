@@ -3,6 +3,8 @@
 //! `cargo run --release --example teapot -- --help`
 #![allow(clippy::disallowed_types, clippy::float_arithmetic, reason = "host-side figures")]
 
+#[path = "data/command.rs"]
+mod command;
 #[path = "data/draw.rs"]
 mod draw;
 #[path = "data/teapot.rs"]
@@ -21,6 +23,7 @@ use embedded_surfaces::subdivide::{PatchTopology, topology};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::error::Error;
 use std::path::PathBuf;
+use std::process::ExitCode;
 
 /// Draw the Utah teapot in bands.
 #[derive(Parser)]
@@ -38,7 +41,7 @@ struct Arguments {
     #[arg(long, default_value_t = 30, allow_negative_numbers = true)]
     spin: i32,
     /// Perspective: the eye's distance in diagonals of the model's box; without it the view is orthographic
-    #[arg(long, value_name = "DIAGONALS")]
+    #[arg(long, value_name = "DIAGONALS", allow_negative_numbers = true)]
     perspective: Option<f64>,
     /// How the patches are drawn
     #[arg(long, value_enum, default_value_t = Look::Shaded)]
@@ -47,7 +50,7 @@ struct Arguments {
     #[arg(long, value_enum, default_value_t = Filling::Exact)]
     fill: Filling,
     /// How far the surface may be from the facets of a grid, in pixels
-    #[arg(long, value_name = "PIXELS", default_value_t = 1.0)]
+    #[arg(long, value_name = "PIXELS", default_value_t = 1.0, allow_negative_numbers = true)]
     tolerance: f64,
     /// Leave out what faces away from the viewer
     #[arg(long)]
@@ -92,18 +95,22 @@ impl From<Look> for Style {
 const COLOUR: Rgb888 = Rgb888::new(236, 196, 140);
 const BACKGROUND: Rgb888 = Rgb888::new(24, 28, 44);
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let arguments = Arguments::parse();
+fn main() -> ExitCode {
+    command::end(place(&Arguments::parse()))
+}
+
+/// Places the patches on the screen, then draws them.
+fn place(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let (width, height) = size(&arguments.size)?;
     let view = View { tilt: Angle::from_degrees(arguments.tilt), spin: Angle::from_degrees(arguments.spin) };
     let to_screen = view.fit(teapot::vertices(), width, height, I16F16::from_num(0.92))?;
     let patches = teapot::patches(&to_screen)?;
     match arguments.perspective {
-        None => run(&arguments, &patches),
+        None => run(arguments, &patches),
         Some(diagonals) => {
             let eye = eye(&patches, (width, height), diagonals)?;
             let seen = patches.iter().map(|patch| patch.perspective(&eye)).collect::<Result<Vec<_>, _>>()?;
-            run(&arguments, &seen)
+            run(arguments, &seen)
         }
     }
 }
@@ -150,7 +157,7 @@ fn run<S: Surface>(arguments: &Arguments, patches: &[S]) -> Result<(), Box<dyn E
     let statistics =
         draw::in_bands(&mut display, scene, paint, (area, arguments.band), |rows| progress.inc(rows.into()))?;
     progress.finish_and_clear();
-    display.to_rgb_output_image(&OutputSettings::default()).save_png(&arguments.output)?;
+    command::save_png(&display, &OutputSettings::default(), &arguments.output)?;
 
     println!("{}: {width} x {height}, bands of {} rows", arguments.output.display(), arguments.band);
     println!("  patches            {}", patches.len());

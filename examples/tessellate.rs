@@ -3,6 +3,8 @@
 //! `cargo run --release --example tessellate -- --help`
 #![allow(clippy::disallowed_types, clippy::float_arithmetic, reason = "host-side figures and hidden lines")]
 
+#[path = "data/command.rs"]
+mod command;
 #[path = "data/draw.rs"]
 mod draw;
 #[path = "data/teapot.rs"]
@@ -26,15 +28,16 @@ use std::error::Error;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 /// Write the Utah teapot as a watertight triangle mesh.
 #[derive(Parser)]
 struct Arguments {
     /// Largest distance between mesh and surface, in millimetres
-    #[arg(long, default_value_t = 0.5)]
+    #[arg(long, default_value_t = 0.5, allow_negative_numbers = true)]
     tolerance: f64,
     /// Length of the teapot from handle to spout, in millimetres
-    #[arg(long, default_value_t = 160.0)]
+    #[arg(long, default_value_t = 160.0, allow_negative_numbers = true)]
     length: f64,
     /// Where the mesh goes: NAME.stl or NAME.obj
     #[arg(short, long, default_value = "teapot.stl")]
@@ -72,8 +75,11 @@ const COLOUR: Rgb888 = Rgb888::new(236, 196, 140);
 const EDGE: Rgb888 = Rgb888::new(30, 60, 110);
 const BACKGROUND: Rgb888 = Rgb888::new(24, 28, 44);
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let arguments = Arguments::parse();
+fn main() -> ExitCode {
+    command::end(run(&Arguments::parse()))
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let scale = to_millimetres(arguments.length)?;
     let patches = teapot::patches(&scale)?;
     let tolerance = fixed_half_up(arguments.tolerance).ok_or("--tolerance: out of range")?;
@@ -89,7 +95,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let buffers = MeshBuffers { vertices: &mut vertices, triangles: &mut triangles, index: &mut index };
     let mesh = tessellation.mesh(buffers)?;
 
-    save(&arguments, &mesh)?;
+    save(arguments, &mesh)?;
     println!("{}: within {} mm of the surface", arguments.output.display(), arguments.tolerance);
     println!("  parts       {}", table.iter().map(PatchTopology::part).max().map_or(0, |last| last + 1));
     println!("  triangles   {}", mesh.triangles().len());
@@ -99,8 +105,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let view = View { tilt: Angle::from_degrees(arguments.tilt), spin: Angle::from_degrees(arguments.spin) };
     let points = mesh.vertices().iter().map(|vertex| vertex.point);
     let to_screen = view.fit(points, width, height, I16F16::from_num(0.92))?;
-    let picture = picture(&arguments, &patches, &mesh, (&to_screen, area))?;
-    picture.to_rgb_output_image(&OutputSettings::default()).save_png(&arguments.picture)?;
+    let picture = picture(arguments, &patches, &mesh, (&to_screen, area))?;
+    command::save_png(&picture, &OutputSettings::default(), &arguments.picture)?;
     println!("{}: {width} x {height}", arguments.picture.display());
     Ok(())
 }
