@@ -62,9 +62,13 @@ pub mod geometry;
 
 pub mod patch;
 
+pub mod mesh;
+
 pub mod forward;
 
 pub mod subdivide;
+
+pub mod g1;
 
 pub mod render;
 

@@ -16,6 +16,7 @@ mod reciprocal;
 mod round;
 mod text;
 mod trig;
+mod triple;
 mod wide;
 mod word;
 
@@ -28,4 +29,6 @@ pub(crate) use coord::{bits_i16f16, bits_i32f32};
 pub(crate) use reciprocal::{Factor, leading_zeros, multiply, reciprocal, reciprocal_root};
 pub(crate) use round::{BINOMIAL, SURJECTIONS, div_half_up, div_up, shift_half_up, shift_up, sqrt_up};
 pub(crate) use text::{Decimal, binary32};
+pub(crate) use trig::arctangent;
+pub(crate) use triple::{Sum3, Triple, UNIT, bits, cross, dot, length, minus, narrow, plus, ratio, root, shortened, unit};
 pub(crate) use wide::Wide;

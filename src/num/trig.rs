@@ -136,6 +136,36 @@ const fn cordic(angle: i64) -> (i64, i64) {
     ((y + half) >> 28, (x + half) >> 28)
 }
 
+/// The direction of (x, y) in 2^-64 turns, counter-clockwise from the x axis, within 2^-40 rad; 0 for the origin.
+///
+/// CORDIC in vectoring mode: round i turns the vector by atan(2^-i) towards the x axis; 41 rounds leave at most
+/// atan(2^-40), of which the last step adds the half of what the sign tells. Truncation adds 41·2^-60 of the length.
+pub(crate) fn arctangent(y: i64, x: i64) -> u64 {
+    let widest = x.unsigned_abs() | y.unsigned_abs();
+    if widest == 0 {
+        return 0;
+    }
+    // The gain is 1.65, the length up to 1.42 of the largest component: 2^60 leaves room for both.
+    let (zeros, half_turn) = (widest.leading_zeros(), 1_u64 << 63);
+    let scaled = |c: i64| if zeros < 4 { c >> (4 - zeros) } else { c << (zeros - 4) };
+    let (mut x, mut y) = (scaled(x), scaled(y));
+    let mut turn = 0_u64;
+    if x < 0 {
+        (x, y, turn) = (-x, -y, half_turn);
+    }
+    for (i, arctangent) in ARCTANGENTS.iter().enumerate() {
+        let (dx, dy) = (y >> i, x >> i);
+        if y >= 0 {
+            (x, y) = (x + dx, y - dy);
+            turn = turn.wrapping_add(*arctangent as u64);
+        } else {
+            (x, y) = (x - dx, y + dy);
+            turn = turn.wrapping_sub(*arctangent as u64);
+        }
+    }
+    turn
+}
+
 impl core::ops::Add for Angle {
     type Output = Self;
     fn add(self, other: Self) -> Self {
@@ -181,6 +211,23 @@ mod tests {
         [1, 2, 3, u32::MAX, 0x3fff_ffff, 0x4000_0001, 0x7fff_ffff].into_iter().for_each(check);
         assert!(worst <= 2.0_f64.powi(-32), "worst error {worst:e}");
         assert!(worst >= 2.0_f64.powi(-34), "a rounded result cannot be that good: {worst:e}");
+    }
+
+    #[test]
+    fn directions_are_within_two_to_the_minus_40() {
+        let mut worst = 0.0_f64;
+        for k in 0..200_000_u64 {
+            let word = (k + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            let (x, y) = ((word as i64) >> (k % 50), (word.rotate_left(29) as i64) >> (k % 31));
+            let turn = arctangent(y, x) as f64 / 18_446_744_073_709_551_616.0;
+            let exact = (y as f64).atan2(x as f64) / core::f64::consts::TAU;
+            let error = (turn - exact).rem_euclid(1.0);
+            worst = worst.max(error.min(1.0 - error) * core::f64::consts::TAU);
+        }
+        assert!(worst <= 2.0_f64.powi(-40), "{worst:e}");
+        assert_eq!(arctangent(0, 0), 0);
+        let quarter = |y, x| (arctangent(y, x).wrapping_add(1 << 40) >> 62) as u8;
+        assert_eq!([quarter(0, 5), quarter(5, 0), quarter(0, i64::MIN), quarter(i64::MIN, 0)], [0, 1, 2, 3]);
     }
 
     #[test]
