@@ -77,11 +77,6 @@ impl Star {
         if i > 0 { i - 1 } else { self.len.saturating_sub(1) }
     }
 
-    /// Whether an edge has faces on both sides.
-    pub(super) fn is_inner(&self, i: usize) -> bool {
-        self.closed || (i > 0 && i + 1 < self.len)
-    }
-
     /// The first edge with faces on both sides, and how many there are.
     pub(super) fn inner(&self) -> (usize, usize) {
         if self.closed { (0, self.len) } else { (1, self.len.saturating_sub(2)) }

@@ -3,7 +3,7 @@
 use super::balance::{Balance, View};
 use super::ring::Star;
 use super::setting::Setting;
-use super::shift::{Mark, Shift};
+use super::shift::Shift;
 use super::G1Error;
 use crate::num::Coord;
 
@@ -18,15 +18,16 @@ impl<C: Coord> Setting<'_, C> {
             return Ok(());
         }
         for _ in 0..SWEEPS {
-            let weak_too = self.mark(shifts)?;
+            let weak_too = self.has_weak(shifts)?;
             let mut changed = false;
             for vertex in 0..shifts.len() {
-                let shift = shifts.get(vertex).copied().unwrap_or_default();
-                let weak = weak_too && shift.has(Mark::Weak);
-                if shift.has(Mark::Due) || weak {
-                    let choice = self.best(vertex, shifts, !weak || shift.has(Mark::Moved))?;
+                let Some(balance) = View { setting: self, shifts }.balance(vertex)? else { continue };
+                let weak = weak_too && balance.is_weak();
+                if weak || balance.is_strained(self.tolerance()) {
+                    let moved = shifts.get(vertex).is_some_and(|shift| shift.was_moved());
+                    let choice = self.best(vertex, shifts, moved || !weak)?;
                     if let Some(entry) = shifts.get_mut(vertex).filter(|entry| entry.number() != choice) {
-                        *entry = entry.to(choice).with(Mark::Moved, true);
+                        *entry = Shift::choice(choice).moved();
                         changed = true;
                     }
                 }
@@ -43,21 +44,16 @@ impl<C: Coord> Setting<'_, C> {
         self.options.tolerance.to_bits()
     }
 
-    /// Marks the vertices that are weak, and those whose points would move too far; whether some weak one has equations
-    /// that are not met.
-    fn mark(&self, shifts: &mut [Shift]) -> Result<bool, G1Error> {
-        let mut weak_too = false;
+    /// Whether some vertex that can hardly meet its equations does not meet them. If there is none, weak ones are
+    /// consistent by symmetry and stay.
+    fn has_weak(&self, shifts: &[Shift]) -> Result<bool, G1Error> {
         for vertex in 0..shifts.len() {
             let balance = View { setting: self, shifts }.balance(vertex)?;
-            let (weak, due) = balance.map_or((false, false), |balance| {
-                weak_too |= balance.is_weak() && !balance.is_met(self.tolerance());
-                (balance.is_weak(), balance.is_strained(self.tolerance()))
-            });
-            if let Some(shift) = shifts.get_mut(vertex) {
-                *shift = shift.with(Mark::Weak, weak).with(Mark::Due, due);
+            if balance.is_some_and(|balance| balance.is_weak() && !balance.is_met(self.tolerance())) {
+                return Ok(true);
             }
         }
-        Ok(weak_too)
+        Ok(false)
     }
 
     /// The best shift of a vertex: the least of 4·J/(1 + J), 4 if it is weak, J/(1 + J) of its even neighbours, and the

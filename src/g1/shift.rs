@@ -9,6 +9,8 @@ pub struct Shift(u8);
 
 /// The low five bits choose.
 const CHOICE: u8 = 31;
+/// Set while the search goes on, for vertices that it has moved.
+const MOVED: u8 = 128;
 
 /// cos and sin of 2π(j + 0.3)/8, in 2^-32.
 const DIRECTIONS: [[i64; 2]; 8] = [
@@ -65,36 +67,19 @@ impl Shift {
         (self.length() * self.length() << 24) / 400
     }
 
-    /// Marks of the search, beside the choice.
-    pub(super) const fn has(self, mark: Mark) -> bool {
-        self.0 & mark as u8 != 0
+    /// With the mark of the search that it was moved before.
+    pub(super) const fn moved(self) -> Self {
+        Self(self.0 | MOVED)
     }
 
-    pub(super) const fn with(self, mark: Mark, set: bool) -> Self {
-        if set { Self(self.0 | mark as u8) } else { Self(self.0 & !(mark as u8)) }
+    pub(super) const fn was_moved(self) -> bool {
+        self.0 & MOVED != 0
     }
 
-    /// The choice alone.
+    /// Without the mark.
     pub(super) const fn unmarked(self) -> Self {
         Self(self.0 & CHOICE)
     }
-
-    /// Another choice with the same marks.
-    pub(super) const fn to(self, choice: u8) -> Self {
-        Self(self.0 & !CHOICE | choice & CHOICE)
-    }
-}
-
-/// What the search notes about a vertex.
-#[derive(Clone, Copy, Debug)]
-#[repr(u8)]
-pub(super) enum Mark {
-    /// Its equations can hardly be met.
-    Weak = 32,
-    /// It is to be moved in this sweep.
-    Due = 64,
-    /// It was moved before.
-    Moved = 128,
 }
 
 #[cfg(test)]
@@ -113,13 +98,12 @@ mod tests {
     }
 
     #[test]
-    fn bytes_hold_a_choice_and_marks() {
-        let mut shift = Shift::choice(24).with(Mark::Due, true).with(Mark::Moved, true).with(Mark::Weak, true);
-        assert_eq!(shift.step(20 << 32).map(|c| c >> 29), [61, -38].map(|c: i64| c)); // 9·(0.853, −0.523)·8
-        shift = shift.with(Mark::Due, false).to(1);
-        assert!(shift.has(Mark::Moved) && shift.has(Mark::Weak) && !shift.has(Mark::Due));
-        assert_eq!(shift.unmarked(), Shift::choice(1));
-        assert_eq!(shift.square(), (9 << 24) / 400);
+    fn bytes_hold_a_choice_and_a_mark() {
+        let shift = Shift::choice(24).moved();
+        assert_eq!(shift.step(20 << 32).map(|c| c >> 29), [61, -38]); // 9·(0.853, −0.523)·8
+        assert!(shift.was_moved() && !shift.is_none() && !Shift::choice(24).was_moved());
+        assert_eq!(shift.unmarked(), Shift::choice(24));
+        assert_eq!(Shift::choice(1).square(), (9 << 24) / 400);
         assert!(Shift::NONE.is_none() && Shift::NONE.step(1 << 40) == [0, 0]);
     }
 }
