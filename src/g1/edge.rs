@@ -152,3 +152,35 @@ impl<C: Coord> Setting<'_, C> {
         Err(G1Error::EdgeSingular { edge, residual })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::g1::balance::View;
+    use crate::g1::{Controls, Options, Shift};
+    use crate::geometry::Point3;
+    use crate::mesh::{Faces, HalfEdge, Links, Mesh};
+    use crate::num::I16F16;
+
+    const FACES: [[u16; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
+
+    /// After the vertices are solved both equations of an edge agree; with a twist point that was altered they do not.
+    #[test]
+    fn an_altered_edge_is_singular() {
+        let points = [[9, 9, 9], [-9, -9, 9], [-9, 9, -9], [9, -9, -9]].map(|[x, y, z]| Point3::from_ints(x, y, z));
+        let links = Links::<4, 12>::new(4, Faces::Triangles(&FACES)).unwrap();
+        let mesh = Mesh::<I16F16>::new(&points, &links).unwrap();
+        let setting = Setting::new(&mesh, &Controls::default(), &Options::default()).unwrap();
+        let view = View { setting: &setting, shifts: &[Shift::NONE; 4] };
+        let end = |vertex: usize, half_edge: usize| {
+            let solved = view.solved(vertex).unwrap();
+            End::of(&solved, solved.fan.star.place_of_half_edge(half_edge))
+        };
+        let twin = mesh.twin(HalfEdge::new(0)).unwrap().index();
+        let (mut from, to) = (end(0, 0), end(1, twin));
+        assert!(setting.edge(&from, &to).is_ok());
+        from.left[1][0] += 1 << 32;
+        let error = setting.edge(&from, &to).unwrap_err();
+        assert!(matches!(error, G1Error::EdgeSingular { edge: [0, 1], residual } if residual > 1 << 25), "{error}");
+    }
+}

@@ -1,7 +1,5 @@
 //! What can be wrong with a surface to interpolate.
 
-use crate::num::I32F32;
-
 /// Why there is no surface for a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -75,15 +73,15 @@ pub enum G1Error {
     VertexInconsistent {
         /// The vertex.
         vertex: usize,
-        /// By how much its equations are not met, in units.
-        residual: I32F32,
+        /// By how much its equations are not met, in 2^-32 units.
+        residual: i64,
     },
     /// An edge whose two equations for the points beside its middle differ.
     EdgeSingular {
         /// Its vertices.
         edge: [u16; 2],
-        /// By how much they differ, in units.
-        residual: I32F32,
+        /// By how much they differ, in 2^-32 units.
+        residual: i64,
     },
     /// Tangents, coefficients or control points around a vertex that leave their range: 2^12 for the coefficients, ±2^26
     /// units for control points, ±32767 where they are rounded.
@@ -152,12 +150,10 @@ impl core::fmt::Display for G1Error {
                 write!(f, "the tangents of vertex {vertex} do not follow each other by less than half a turn")
             }
             Self::VertexInconsistent { vertex, residual } => {
-                let bits = residual.to_bits();
-                write!(f, "the tangents of vertex {vertex} admit no solution: {bits} / 2^32 is left")
+                write!(f, "the tangents of vertex {vertex} admit no solution: {residual} / 2^32 is left")
             }
             Self::EdgeSingular { edge: [from, to], residual } => {
-                let bits = residual.to_bits();
-                write!(f, "the equations of the edge from vertex {from} to vertex {to} differ by {bits} / 2^32")
+                write!(f, "the equations of the edge from vertex {from} to vertex {to} differ by {residual} / 2^32")
             }
             Self::Overflow { vertex } => {
                 write!(f, "tangents, coefficients or control points around vertex {vertex} leave their range")

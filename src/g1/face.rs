@@ -103,15 +103,15 @@ impl<C: Coord> View<'_, '_, C> {
     fn middle(&self, half_edge: usize, c: usize, corners: &[Corner; 3], points: &mut Points) -> Result<(), G1Error> {
         let (from, to) = (&corners[c % 3], &corners[(c + 1) % 3]);
         let at = index_from(c, 2, 2, 1);
-        let Some(twin) = self.setting.mesh.twin(HalfEdge::new(half_edge as u16)) else {
+        if self.setting.mesh.twin(HalfEdge::new(half_edge as u16)).is_none() {
             // A border: the target and the mean of its neighbours' changes.
             let change = |corner: &Corner| minus(&corner.twist, &corner.twist_target);
             let sum = Sum3::default().plus(&points[at], 2).plus(&change(from), 1).plus(&change(to), 1);
             points[at] = fits(sum.narrow(1), from.vertex)?;
             return Ok(());
-        };
+        }
         // Both faces fill the edge in the same direction, to the same bits.
-        let along = half_edge < twin.index();
+        let along = from.vertex < to.vertex;
         let (first, last) = (&from.ends[0], &to.ends[1]);
         let edge = if along { self.setting.edge(first, last)? } else { self.setting.edge(last, first)? };
         points[at] = if along { edge.l[2] } else { edge.r[2] };
@@ -135,11 +135,12 @@ impl<C: Coord> View<'_, '_, C> {
         Ok(Face { points, target: points })
     }
 
-    /// The points of an inner edge, and its half-edge's vertices solved anew.
+    /// The points of an inner edge, from its vertex of the lesser number.
     #[inline(never)]
     pub(super) fn edge_of(&self, half_edge: usize, twin: usize) -> Result<Edge, G1Error> {
         let (from, to) = (self.corner(half_edge)?, self.corner(twin)?);
-        self.setting.edge(&from.ends[0], &to.ends[0])
+        let [first, last] = if from.vertex < to.vertex { [&from, &to] } else { [&to, &from] };
+        self.setting.edge(&first.ends[0], &last.ends[0])
     }
 }
 

@@ -59,7 +59,18 @@ impl Star {
         if star.closed && (1..3).contains(&valence) {
             return Err(G1Error::NonManifoldVertex { vertex });
         }
-        Ok(star)
+        Ok(if star.closed { star.turned() } else { star })
+    }
+
+    /// Beginning with the neighbour of the least number, so that the order of faces and of their corners does not matter.
+    fn turned(self) -> Self {
+        let first = (0..self.len).min_by_key(|i| self.to[*i]).unwrap_or(0);
+        let mut turned = self;
+        for i in 0..self.len {
+            let from = if first + i < self.len { first + i } else { first + i - self.len };
+            (turned.to[i], turned.left[i]) = (self.to[from], self.left[from]);
+        }
+        turned
     }
 
     /// The number of faces.

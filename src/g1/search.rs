@@ -3,7 +3,7 @@
 use super::balance::{Balance, View};
 use super::ring::Star;
 use super::setting::Setting;
-use super::shift::Shift;
+use super::shift::{DUE, MOVED, Shift, WEAK};
 use super::G1Error;
 use crate::num::Coord;
 
@@ -18,18 +18,20 @@ impl<C: Coord> Setting<'_, C> {
             return Ok(());
         }
         for _ in 0..SWEEPS {
-            let weak_too = self.has_weak(shifts)?;
+            let weak_too = self.mark(shifts)?;
             let mut changed = false;
             for vertex in 0..shifts.len() {
-                let Some(balance) = View { setting: self, shifts }.balance(vertex)? else { continue };
-                let weak = weak_too && balance.is_weak();
-                if weak || balance.is_strained(self.tolerance()) {
-                    let moved = shifts.get(vertex).is_some_and(|shift| shift.was_moved());
-                    let choice = self.best(vertex, shifts, moved || !weak)?;
-                    if let Some(entry) = shifts.get_mut(vertex).filter(|entry| entry.number() != choice) {
-                        *entry = Shift::choice(choice).moved();
-                        changed = true;
-                    }
+                let shift = shifts.get(vertex).copied().unwrap_or_default();
+                if !shift.has(DUE) {
+                    continue;
+                }
+                // Neighbours that have moved may have helped.
+                let balance = View { setting: self, shifts }.balance(vertex)?;
+                let weak = weak_too && balance.is_some_and(|balance| balance.is_weak());
+                let choice = self.best(vertex, shifts, shift.has(MOVED) || !weak)?;
+                if let Some(entry) = shifts.get_mut(vertex).filter(|entry| entry.number() != choice) {
+                    *entry = Shift::choice(choice).with(MOVED, true);
+                    changed = true;
                 }
             }
             if !changed {
@@ -44,16 +46,25 @@ impl<C: Coord> Setting<'_, C> {
         self.options.tolerance.to_bits()
     }
 
-    /// Whether some vertex that can hardly meet its equations does not meet them. If there is none, weak ones are
-    /// consistent by symmetry and stay.
-    fn has_weak(&self, shifts: &[Shift]) -> Result<bool, G1Error> {
+    /// Marks the vertices to look at: those whose points would move too far; and, if some vertex that can hardly meet its
+    /// equations does not meet them, all such vertices. Otherwise these are consistent by symmetry and stay. Returns
+    /// whether such vertices count.
+    fn mark(&self, shifts: &mut [Shift]) -> Result<bool, G1Error> {
+        let mut weak_too = false;
         for vertex in 0..shifts.len() {
             let balance = View { setting: self, shifts }.balance(vertex)?;
-            if balance.is_some_and(|balance| balance.is_weak() && !balance.is_met(self.tolerance())) {
-                return Ok(true);
+            let (weak, strained) = balance.map_or((false, false), |balance| {
+                weak_too |= balance.is_weak() && !balance.is_met(self.tolerance());
+                (balance.is_weak(), balance.is_strained(self.tolerance()))
+            });
+            if let Some(shift) = shifts.get_mut(vertex) {
+                *shift = shift.with(WEAK, weak).with(DUE, strained);
             }
         }
-        Ok(false)
+        for shift in shifts.iter_mut().filter(|shift| weak_too && shift.has(WEAK)) {
+            *shift = shift.with(DUE, true);
+        }
+        Ok(weak_too)
     }
 
     /// The best shift of a vertex: the least of 4·J/(1 + J), 4 if it is weak, J/(1 + J) of its even neighbours, and the

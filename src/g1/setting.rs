@@ -99,10 +99,10 @@ impl<'a, C: Coord> Setting<'a, C> {
         vector.map(|c| (i128::from(c.to_bits()) << self.shift).clamp(-limit, limit) as i64)
     }
 
-    /// A length or a vector's component back in 2^-32 units.
-    pub(super) fn outward(&self, length: i128) -> I32F32 {
-        let bits = shift_half_up(length.clamp(-(1 << 120), 1 << 120), self.shift);
-        I32F32::from_bits(bits.clamp(i64::MIN.into(), i64::MAX.into()) as i64)
+    /// A length back in 2^-32 units.
+    pub(super) fn outward(&self, length: i128) -> i64 {
+        let bits = shift_half_up(length.clamp(0, 1 << 120), self.shift);
+        bits.min(i64::MAX.into()) as i64
     }
 
     /// A control point in units, half up; `None` outside the legal range.

@@ -9,8 +9,11 @@ pub struct Shift(u8);
 
 /// The low five bits choose.
 const CHOICE: u8 = 31;
-/// Set while the search goes on, for vertices that it has moved.
-const MOVED: u8 = 128;
+/// Set while the search goes on: for vertices that it has moved, for those that it looks at in this sweep, and for those
+/// that can hardly meet their equations.
+pub(super) const MOVED: u8 = 128;
+pub(super) const DUE: u8 = 64;
+pub(super) const WEAK: u8 = 32;
 
 /// cos and sin of 2π(j + 0.3)/8, in 2^-32.
 const DIRECTIONS: [[i64; 2]; 8] = [
@@ -67,16 +70,16 @@ impl Shift {
         (self.length() * self.length() << 24) / 400
     }
 
-    /// With the mark of the search that it was moved before.
-    pub(super) const fn moved(self) -> Self {
-        Self(self.0 | MOVED)
+    /// The same with a mark of the search set or not.
+    pub(super) const fn with(self, mark: u8, set: bool) -> Self {
+        Self(if set { self.0 | mark } else { self.0 & !mark })
     }
 
-    pub(super) const fn was_moved(self) -> bool {
-        self.0 & MOVED != 0
+    pub(super) const fn has(self, mark: u8) -> bool {
+        self.0 & mark != 0
     }
 
-    /// Without the mark.
+    /// Without the marks.
     pub(super) const fn unmarked(self) -> Self {
         Self(self.0 & CHOICE)
     }
@@ -98,10 +101,10 @@ mod tests {
     }
 
     #[test]
-    fn bytes_hold_a_choice_and_a_mark() {
-        let shift = Shift::choice(24).moved();
+    fn bytes_hold_a_choice_and_marks() {
+        let shift = Shift::choice(24).with(MOVED, true).with(DUE, true).with(DUE, false);
         assert_eq!(shift.step(20 << 32).map(|c| c >> 29), [61, -38]); // 9·(0.853, −0.523)·8
-        assert!(shift.was_moved() && !shift.is_none() && !Shift::choice(24).was_moved());
+        assert!(shift.has(MOVED) && !shift.has(DUE) && !shift.is_none() && !Shift::choice(24).has(MOVED));
         assert_eq!(shift.unmarked(), Shift::choice(24));
         assert_eq!(Shift::choice(1).square(), (9 << 24) / 400);
         assert!(Shift::NONE.is_none() && Shift::NONE.step(1 << 40) == [0, 0]);
