@@ -57,7 +57,10 @@ fn assert_smooth(name: &str, skin: &Skin, solution: &Solution) {
         assert!(residual <= 4.0, "{name}: a coefficient of {residual} roundings at {seam:?}");
     }
     let reported = solution.quality.max_angle as f64 / 2_f64.powi(60);
-    assert!(reported <= 1.01 * largest + 1e-13 && reported >= 0.5 * largest - 1e-13, "{name}: {reported:e} {largest:e}");
+    assert!(
+        reported <= 1.01 * largest + 1e-13 && reported >= 0.5 * largest - 1e-13,
+        "{name}: {reported:e} {largest:e}"
+    );
 }
 
 /// The same mesh with its vertices from the last to the first: every edge is filled the other way, every vertex is solved

@@ -26,7 +26,8 @@ fn check<C: Coord>(mesh: &Mesh<'_, C>) {
             assert_eq!(mesh.tip(half_edge), usize::from(next));
             assert_eq!(mesh.previous(mesh.next(half_edge)), half_edge);
             assert_eq!(mesh.origin(mesh.next(half_edge)), mesh.tip(half_edge));
-            let back = |face: &Vec<u16>| (0..face.len()).any(|i| (face[i], face[(i + 1) % face.len()]) == (next, *corner));
+            let back =
+                |face: &Vec<u16>| (0..face.len()).any(|i| (face[i], face[(i + 1) % face.len()]) == (next, *corner));
             let twin = mesh.twin(half_edge);
             assert_eq!(twin.is_some(), faces.iter().any(back));
             if let Some(twin) = twin {

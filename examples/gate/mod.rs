@@ -5,9 +5,11 @@
 
 mod data;
 mod forward;
+mod g1;
 mod geometry;
 #[cfg(feature = "graphics")]
 mod graphics;
+mod mesh;
 mod num;
 mod patch;
 mod render;
@@ -34,9 +36,11 @@ pub(crate) const MODULES: &[Module] = &[
     ("patch, quadrics", patch::quadrics::calls),
     ("patch, Hermite", patch::hermite::calls),
     ("patch, Coons", patch::coons::calls),
+    ("mesh", mesh::calls),
     ("forward", forward::calls),
     ("subdivide", subdivide::calls),
     ("subdivide, meshes", subdivide::mesh::calls),
+    ("g1", g1::calls),
     ("render", render::calls),
     ("render, grid", render::grid::calls),
     #[cfg(feature = "graphics")]

@@ -99,9 +99,9 @@ fn options(case: &Field<'_>) -> Result<(Options, Option<f64>), Malformed> {
         let number = tolerance.number()?;
         let least = Options::LEAST_TOLERANCE.to_num::<f64>();
         let legal = (least..=1.0).contains(&number);
-        options.tolerance = fixed(number).filter(|_| legal).ok_or_else(|| {
-            tolerance.malformed(&format!("{number} is not in {least} ..= 1"))
-        })?;
+        options.tolerance = fixed(number)
+            .filter(|_| legal)
+            .ok_or_else(|| tolerance.malformed(&format!("{number} is not in {least} ..= 1")))?;
     }
     if let Some(field) = fields.get("scale") {
         scale = Some(power_of_two(&field)?);
@@ -138,7 +138,8 @@ fn read(case: &Field<'_>) -> Result<Case, Malformed> {
         let end = corners.len();
         ends.push(u16::try_from(end).map_err(|_| faces.malformed(&format!("has {end} corners or more")))?);
     }
-    let normals = case.get("normals").map(|list| list.items()?.iter().map(normal).collect::<Result<_, _>>()).transpose()?;
+    let normals =
+        case.get("normals").map(|list| list.items()?.iter().map(normal).collect::<Result<_, _>>()).transpose()?;
     let mut tangents = Vec::new();
     for tangent in case.get("tangents").map_or(Ok(Vec::new()), |list| list.items())? {
         let [from, to, along] = tangent.fixed()?;
@@ -172,8 +173,7 @@ fn quality(quality: &Quality, folded: Vec<usize>) -> Value {
 
 fn interpolate(case: &Case, mesh: &Mesh<'_, I32F32>) -> Result<Map<String, Value>, G1Error> {
     let mut shifts = vec![Shift::NONE; case.points.len()];
-    let controls =
-        Controls { normals: case.normals.as_deref(), tangents: &case.tangents, ..Controls::default() };
+    let controls = Controls { normals: case.normals.as_deref(), tangents: &case.tangents, ..Controls::default() };
     let surface = Interpolant::new(mesh, &controls, &case.options, &mut shifts)?;
     let triangles = surface.triangles().collect::<Result<Vec<_>, _>>()?;
     let mut folded = Vec::new();

@@ -93,7 +93,9 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let result = run(&arguments).and_then(|value| {
         let text = value.to_string();
-        if let (Command::Lattice | Command::Tessellate | Command::G1, Some(path)) = (arguments.command, &arguments.output) {
+        if let (Command::Lattice | Command::Tessellate | Command::G1, Some(path)) =
+            (arguments.command, &arguments.output)
+        {
             std::fs::write(path, &text).map_err(|e| Malformed::new("-o", &format!("{}: {e}", path.display())))?;
         }
         Ok(text)

@@ -1,10 +1,10 @@
 //! What a vertex sees of its neighbours, and whether its equations can be met (step 3 of the scheme).
 
+use super::G1Error;
 use super::fan::Fan;
 use super::ring::{Ring, Star};
 use super::setting::{FACTOR, ONE, Setting, fits};
 use super::shift::Shift;
-use super::G1Error;
 use crate::num::{Coord, Sum3, Triple, length, minus, narrow, ratio, root, shift_half_up};
 
 /// |K| and |M| below this are rounding.

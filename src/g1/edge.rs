@@ -129,7 +129,8 @@ impl<C: Coord> Setting<'_, C> {
             .plus(&edge.e(3), -4 * m[0]);
         self.check_middle(&near, &far, (span, m), names)?;
         // Four bits more than the points have, then over the twelve equations.
-        let both = [0, 1, 2].map(|c| shift_half_up(near.0[c].saturating_add(far.0[c]).clamp(-LARGE, LARGE), FACTOR - 4));
+        let both =
+            [0, 1, 2].map(|c| shift_half_up(near.0[c].saturating_add(far.0[c]).clamp(-LARGE, LARGE), FACTOR - 4));
         let s2 = fits(Sum3(both).divide(12 << 4), vertex)?;
         let sum = Sum3::default().plus(&s2, 1).plus(&edge.c[2], 1).plus(&edge.c[3], 1);
         edge.l[2] = fits(sum.plus(&t2, 1).narrow(1), vertex)?;

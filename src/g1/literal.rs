@@ -4,9 +4,9 @@
 //! is made explicit with the divisor 4(1 + λ₁ + μ₁); the points beside the middle from (3-6). With ν = 1 the condition is
 //! D* + μE + λD = 0, at a vertex λ = A⁻/A and μ = −det(t⁻, t⁺)/A.
 
+use super::G1Error;
 use super::edge::{Edge, End};
 use super::setting::{FACTOR, ONE, combine, fits};
-use super::G1Error;
 use crate::num::{Sum3, Triple, length, minus, ratio};
 
 /// Divisors below this are 0: 2^-28.
@@ -90,18 +90,14 @@ fn ends(edge: &mut Edge, ratios: &Ratios) -> Option<()> {
     // −μ₀·(c2 − c1) = D*1 + λ₀·D1 + (D*0 + μ₁·E0 + λ₁·D0)/4
     let c1 = edge.c[1];
     let rest = quarter(side(edge, 0, (lambda1, mu1)))?;
-    let sum = Sum3::default()
-        .plus(&minus(&edge.r[1], &c1), -ONE)
-        .plus(&minus(&edge.l[1], &c1), -lambda0)
-        .plus(&rest, -ONE);
+    let sum =
+        Sum3::default().plus(&minus(&edge.r[1], &c1), -ONE).plus(&minus(&edge.l[1], &c1), -lambda0).plus(&rest, -ONE);
     let c2 = crate::num::plus(&c1, &over(sum, mu0)?);
     // (1 + λ₁ + μ₁)·c3 = r3 + λ₁·l3 + μ₁·c4 + (D*4 + μ₀·E4 + λ₀·D4)/4, from c4 as origin.
     let c4 = edge.c[4];
     let rest = quarter(side(edge, 4, (lambda0, mu0)))?;
-    let sum = Sum3::default()
-        .plus(&minus(&edge.r[3], &c4), ONE)
-        .plus(&minus(&edge.l[3], &c4), lambda1)
-        .plus(&rest, ONE);
+    let sum =
+        Sum3::default().plus(&minus(&edge.r[3], &c4), ONE).plus(&minus(&edge.l[3], &c4), lambda1).plus(&rest, ONE);
     let c3 = crate::num::plus(&c4, &over(sum, ratios.far_divisor)?);
     let short = |p: &Triple| p.iter().all(|c| c.unsigned_abs() < 1 << 60);
     (short(&c2) && short(&c3)).then(|| (edge.c[2], edge.c[3]) = (c2, c3))

@@ -154,7 +154,8 @@ impl<C: Coord> View<'_, '_, C> {
     }
 
     pub(super) fn quality(&self) -> Result<Quality, G1Error> {
-        let mut quality = Quality { shifted: self.shifts.iter().filter(|shift| !shift.is_none()).count(), ..Quality::default() };
+        let mut quality =
+            Quality { shifted: self.shifts.iter().filter(|shift| !shift.is_none()).count(), ..Quality::default() };
         for face in 0..self.setting.mesh.faces().len() {
             self.add_face(&mut quality, face)?;
             for half_edge in 3 * face..3 * face + 3 {
@@ -173,7 +174,8 @@ impl<C: Coord> View<'_, '_, C> {
         let corners = [face.points[0], face.points[index(5, 0)], face.points[index(0, 5)]];
         let span = |a: usize, b: usize| length(&minus(&corners[a], &corners[b]));
         let longest = span(0, 1).max(span(1, 2)).max(span(2, 0));
-        let deviation = ratio(largest_change(&face.points, &face.target).into(), longest.into(), 32).unwrap_or(i64::MAX);
+        let deviation =
+            ratio(largest_change(&face.points, &face.target).into(), longest.into(), 32).unwrap_or(i64::MAX);
         quality.max_deviation = quality.max_deviation.max(I32F32::from_bits(deviation));
         quality.folded += usize::from(folds(&face.points, &face.target));
         Ok(())
@@ -195,7 +197,8 @@ impl<C: Coord> View<'_, '_, C> {
     fn seam(&self, half_edge: usize, twin: usize) -> Result<Edge, G1Error> {
         let mut edge = Edge { c: [[0; 3]; 6], l: [[0; 3]; 5], r: [[0; 3]; 5], correction: 0 };
         let (left, right) = (self.face(half_edge / 3)?.points, self.face(twin / 3)?.points);
-        let place = |half_edge: usize, a: usize, b: usize, rest: usize| super::face::index_from(half_edge % 3, a, b, rest) % 21;
+        let place =
+            |half_edge: usize, a: usize, b: usize, rest: usize| super::face::index_from(half_edge % 3, a, b, rest) % 21;
         for (i, c) in edge.c.iter_mut().enumerate() {
             *c = left[place(half_edge, 5 - i, i, 0)];
         }

@@ -1,10 +1,10 @@
 //! The first pass: which vertices have their tangents moved, and where to (step 3 of the scheme).
 
+use super::G1Error;
 use super::balance::{Balance, View};
 use super::ring::Star;
 use super::setting::Setting;
 use super::shift::{DUE, MOVED, Shift, WEAK};
-use super::G1Error;
 use crate::num::Coord;
 
 /// Sweeps over the mesh, at most.
@@ -26,8 +26,11 @@ impl<C: Coord> Setting<'_, C> {
                     continue;
                 }
                 // Neighbours that have moved may have helped.
-                let balance = View { setting: self, shifts }.balance(vertex)?;
-                let weak = weak_too && balance.is_some_and(|balance| balance.is_weak());
+                let Some(balance) = View { setting: self, shifts }.balance(vertex)? else { continue };
+                let weak = weak_too && balance.is_weak();
+                if !weak && !balance.is_strained(self.tolerance()) {
+                    continue;
+                }
                 let choice = self.best(vertex, shifts, shift.has(MOVED) || !weak)?;
                 if let Some(entry) = shifts.get_mut(vertex).filter(|entry| entry.number() != choice) {
                     *entry = Shift::choice(choice).with(MOVED, true);

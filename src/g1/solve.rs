@@ -162,7 +162,8 @@ fn apply(solved: &mut Solved, omega: &Ring<i64>, lambda: &Ring<Wide3>) -> Option
     for row in 0..rows {
         let (i, lambda) = (first + row, lambda[row]);
         let times = |factor: i64| {
-            let [x, y, z] = lambda.map(|c| shift_half_up(c.saturating_mul(factor.into()).clamp(-(1 << 125), 1 << 125), 64));
+            let [x, y, z] =
+                lambda.map(|c| shift_half_up(c.saturating_mul(factor.into()).clamp(-(1 << 125), 1 << 125), 64));
             crate::num::narrow([x, y, z])
         };
         let before = fan.star.before(i);
@@ -172,6 +173,7 @@ fn apply(solved: &mut Solved, omega: &Ring<i64>, lambda: &Ring<Wide3>) -> Option
         solved.z[i] = plus(&solved.z[i], &times(free as i64)?);
     }
     // Below 2^61, as every vector is.
-    let short = |vectors: &Ring<Triple>| (0..fan.star.len).all(|i| vectors[i].iter().all(|c| c.unsigned_abs() < 1 << 61));
+    let short =
+        |vectors: &Ring<Triple>| (0..fan.star.len).all(|i| vectors[i].iter().all(|c| c.unsigned_abs() < 1 << 61));
     (short(&solved.w) && short(&solved.z)).then_some(())
 }

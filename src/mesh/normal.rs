@@ -2,7 +2,9 @@
 
 use super::Mesh;
 use crate::geometry::Vector3;
-use crate::num::{Coord, I32F32, Sum3, Triple, UNIT, arctangent, cross, dot, length, minus, shift_half_up, shortened, unit};
+use crate::num::{
+    Coord, I32F32, Sum3, Triple, UNIT, arctangent, cross, dot, length, minus, shift_half_up, shortened, unit,
+};
 
 /// The angle between two directions in 2^-64 turns, at most a half, within 2^-38 rad.
 pub(crate) fn angle_between(a: &Triple, b: &Triple) -> u64 {

@@ -30,5 +30,7 @@ pub(crate) use reciprocal::{Factor, leading_zeros, multiply, reciprocal, recipro
 pub(crate) use round::{BINOMIAL, SURJECTIONS, div_half_up, div_up, shift_half_up, shift_up, sqrt_up};
 pub(crate) use text::{Decimal, binary32};
 pub(crate) use trig::arctangent;
-pub(crate) use triple::{Sum3, Triple, UNIT, bits, cross, dot, length, minus, narrow, plus, ratio, root, shortened, unit};
+pub(crate) use triple::{
+    Sum3, Triple, UNIT, bits, cross, dot, length, minus, narrow, plus, ratio, root, shortened, unit,
+};
 pub(crate) use wide::Wide;

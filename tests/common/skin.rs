@@ -109,7 +109,8 @@ impl Skin {
     /// The surface, at the size of the skin. Normals get more bits than a unit vector in `I32F32` has.
     pub(crate) fn solve(&self, controls: &Controls<'_>, options: &Options) -> Result<Solution, Refusal> {
         let points: Vec<_> = self.points.iter().map(|p| point(*p)).collect();
-        let normal = |n: &V3| Vector3::from_array(n.map(|c| fixed(c * if length(*n) < 1e-3 { 1.0 } else { 16_777_216.0 })));
+        let normal =
+            |n: &V3| Vector3::from_array(n.map(|c| fixed(c * if length(*n) < 1e-3 { 1.0 } else { 16_777_216.0 })));
         let normals: Option<Vec<_>> = self.normals.as_ref().map(|normals| normals.iter().map(normal).collect());
         let links = Links::<800, 4800>::new(points.len(), Faces::Triangles(&self.faces)).map_err(Refusal::Mesh)?;
         let mesh = Mesh::<I32F32>::new(&points, &links).map_err(Refusal::Mesh)?;
@@ -192,8 +193,7 @@ impl Seam {
     pub(crate) fn residual(&self, bits: i32) -> f64 {
         let t: [V3; 5] = core::array::from_fn(|i| minus(self.l[i], self.r[i]));
         let e: [V3; 5] = core::array::from_fn(|i| minus(self.c[i + 1], self.c[i]));
-        let s: [V3; 5] =
-            core::array::from_fn(|i| plus(minus(self.l[i], self.c[i]), minus(self.r[i], self.c[i + 1])));
+        let s: [V3; 5] = core::array::from_fn(|i| plus(minus(self.l[i], self.c[i]), minus(self.r[i], self.c[i + 1])));
         // At an end: s + κt + me = 0 in the tangent plane.
         let solve = |i: usize| {
             let normal = cross(t[i], e[i]);
