@@ -2,7 +2,7 @@
 
 use super::G1Error;
 use super::fan::Fan;
-use super::ring::{Ring, Star};
+use super::ring::Ring;
 use super::setting::{FACTOR, ONE, Setting, fits};
 use super::shift::Shift;
 use crate::num::{Coord, Sum3, Triple, length, minus, narrow, ratio, root, shift_half_up};
@@ -29,6 +29,14 @@ pub(super) struct Far {
     pub(super) d: Ring<Triple>,
 }
 
+impl Far {
+    /// A place for it, so that none is copied.
+    pub(super) const fn blank() -> Self {
+        let (none, zero) = (Ring::all([0; 3]), Ring::all(0));
+        Self { e: none, kappa: zero, m: zero, to_next: none, to_previous: none, d: none }
+    }
+}
+
 /// All vertices with what is known of their shifts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct View<'s, 'a, C> {
@@ -37,25 +45,26 @@ pub(super) struct View<'s, 'a, C> {
 }
 
 impl<C: Coord> View<'_, '_, C> {
-    pub(super) fn fan(&self, vertex: usize) -> Result<Fan, G1Error> {
-        self.setting.fan(vertex, self.shifts.get(vertex).copied().unwrap_or_default())
+    /// The tangents of a vertex, with its shift.
+    pub(super) fn fan(&self, vertex: usize, fan: &mut Fan) -> Result<(), G1Error> {
+        self.setting.fan(vertex, self.shifts.get(vertex).copied().unwrap_or_default(), fan)
     }
 
+    /// What a vertex with these tangents sees of its neighbours.
     #[inline(never)]
-    pub(super) fn far(&self, at: &Triple, vertex: usize, star: &Star) -> Result<Far, G1Error> {
-        let (none, zero) = (Ring::all([0; 3]), Ring::all(0));
-        let mut far = Far { e: none, kappa: zero, m: zero, to_next: none, to_previous: none, d: none };
-        for i in 0..star.len {
-            let fan = self.fan(star.to[i].into())?;
-            let back = fan.star.place_of(vertex);
+    pub(super) fn far(&self, of: &Fan, far: &mut Far) -> Result<(), G1Error> {
+        let mut fan = Fan::blank();
+        for i in 0..of.star.len {
+            self.fan(of.star.to[i].into(), &mut fan)?;
+            let back = fan.star.place_of(of.vertex);
             far.e[i] = fan.e[back];
             far.kappa[i] = fan.kappa[back];
             far.m[i] = fan.m[back];
             far.to_next[i] = fan.e[fan.star.before(back)];
             far.to_previous[i] = fan.e[fan.star.after(back)];
-            far.d[i] = minus(&fan.at, at);
+            far.d[i] = minus(&fan.at, &of.at);
         }
-        Ok(far)
+        Ok(())
     }
 }
 

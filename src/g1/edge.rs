@@ -64,17 +64,17 @@ impl Edge {
 
     /// T_i = l_i − r_i.
     fn t(&self, i: usize) -> Triple {
-        minus(&self.l[i], &self.r[i])
+        minus(&self.l[i % 5], &self.r[i % 5])
     }
 
     /// S_i = l_i + r_i − c_i − c_(i+1).
     fn s(&self, i: usize) -> Triple {
-        plus(&minus(&self.l[i], &self.c[i]), &minus(&self.r[i], &self.c[i + 1]))
+        plus(&minus(&self.l[i % 5], &self.c[i % 5]), &minus(&self.r[i % 5], &self.c[i % 5 + 1]))
     }
 
     /// E_i = c_(i+1) − c_i.
     fn e(&self, i: usize) -> Triple {
-        minus(&self.c[i + 1], &self.c[i])
+        minus(&self.c[i % 5 + 1], &self.c[i % 5])
     }
 
     /// Δ⁵c.
@@ -129,8 +129,8 @@ impl<C: Coord> Setting<'_, C> {
             .plus(&edge.e(3), -4 * m[0]);
         self.check_middle(&near, &far, (span, m), names)?;
         // Four bits more than the points have, then over the twelve equations.
-        let both =
-            [0, 1, 2].map(|c| shift_half_up(near.0[c].saturating_add(far.0[c]).clamp(-LARGE, LARGE), FACTOR - 4));
+        let rounded = |near: i128, far: i128| shift_half_up(near.saturating_add(far).clamp(-LARGE, LARGE), FACTOR - 4);
+        let both = [rounded(near.0[0], far.0[0]), rounded(near.0[1], far.0[1]), rounded(near.0[2], far.0[2])];
         let s2 = fits(Sum3(both).divide(12 << 4), vertex)?;
         let sum = Sum3::default().plus(&s2, 1).plus(&edge.c[2], 1).plus(&edge.c[3], 1);
         edge.l[2] = fits(sum.plus(&t2, 1).narrow(1), vertex)?;
@@ -141,7 +141,8 @@ impl<C: Coord> Setting<'_, C> {
     /// The two equations of 6·S2, in 2^-48, must agree: within twice the tolerance of the edge's length and what rounding
     /// leaves.
     fn check_middle(&self, near: &Sum3, far: &Sum3, (span, m): (u64, [i64; 2]), edge: [u16; 2]) -> Result<(), G1Error> {
-        let difference = (0..3).map(|c| near.0[c].saturating_sub(far.0[c]).unsigned_abs()).max().unwrap_or(0) >> 32;
+        let apart = near.0.iter().zip(&far.0).map(|(near, far)| near.saturating_sub(*far).unsigned_abs());
+        let difference = apart.max().unwrap_or(0) >> 32;
         // In 2^-48.
         let rounding = (1 << 24) + ((m[0].unsigned_abs() >> 20) + (m[1].unsigned_abs() >> 20));
         let tolerance = self.options.tolerance.to_bits().unsigned_abs();
@@ -174,7 +175,8 @@ mod tests {
         let setting = Setting::new(&mesh, &Controls::default(), &Options::default()).unwrap();
         let view = View { setting: &setting, shifts: &[Shift::NONE; 4] };
         let end = |vertex: usize, half_edge: usize| {
-            let solved = view.solved(vertex).unwrap();
+            let mut solved = Solved::blank();
+            view.solved(vertex, &mut solved).unwrap();
             End::of(&solved, solved.fan.star.place_of_half_edge(half_edge))
         };
         let twin = mesh.twin(HalfEdge::new(0)).unwrap().index();

@@ -69,7 +69,9 @@ impl<C: Coord> View<'_, '_, C> {
     #[inline(never)]
     fn corner(&self, half_edge: usize) -> Result<Corner, G1Error> {
         let vertex = self.setting.mesh.origin(HalfEdge::new(half_edge as u16));
-        Ok(Corner::of(&self.solved(vertex)?, half_edge))
+        let mut solved = Solved::blank();
+        self.solved(vertex, &mut solved)?;
+        Ok(Corner::of(&solved, half_edge))
     }
 
     /// The control points of a face.

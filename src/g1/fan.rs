@@ -78,14 +78,23 @@ impl Fan {
         Sum3::default().plus(a, x).plus(b, y).narrow(UNIT)
     }
 
-    /// The fan with its centre moved.
-    pub(super) fn moved(mut self, shift: Shift) -> Self {
+    /// A place for a fan, so that none is copied.
+    pub(super) const fn blank() -> Self {
+        let star = Star { len: 0, closed: true, to: Ring::all(0), left: Ring::all(0) };
+        let (t, e, factors) = (Ring::all([0; 2]), Ring::all([0; 3]), Ring::all(0));
+        Self { vertex: 0, at: [0; 3], star, axes: [[0; 3]; 2], t, e, kappa: factors, m: factors, size: 0 }
+    }
+
+    /// Moves the centre.
+    pub(super) fn move_by(&mut self, shift: Shift) {
+        if shift.is_none() {
+            return;
+        }
         let [x, y] = shift.step(self.size);
         for i in 0..self.star.len {
             let t = self.t[i];
             self.t[i] = [t[0].wrapping_add(x), t[1].wrapping_add(y)];
         }
-        self
     }
 
     /// Whether the sine of every sector is at least a tenth.
@@ -98,7 +107,7 @@ impl Fan {
     }
 
     /// Fills in vectors and coefficients.
-    fn finish(&mut self) -> Result<(), G1Error> {
+    pub(super) fn finish(&mut self) -> Result<(), G1Error> {
         for i in 0..self.star.len {
             self.e[i] = fits(self.lifted(i), self.vertex)?;
         }
@@ -123,25 +132,20 @@ impl<C: Coord> Setting<'_, C> {
 
     /// A vertex with its tangents, moved as the first pass says, and its coefficients.
     #[inline(never)]
-    pub(super) fn fan(&self, vertex: usize, shift: Shift) -> Result<Fan, G1Error> {
-        let mut fan = self.original(vertex)?;
-        if !shift.is_none() {
-            fan = fan.moved(shift);
-        }
-        fan.finish()?;
-        Ok(fan)
+    pub(super) fn fan(&self, vertex: usize, shift: Shift, fan: &mut Fan) -> Result<(), G1Error> {
+        self.original(vertex, fan)?;
+        fan.move_by(shift);
+        fan.finish()
     }
 
     /// A vertex with its tangents where no shift has moved them (step 1), without vectors and coefficients.
     #[inline(never)]
-    pub(super) fn original(&self, vertex: usize) -> Result<Fan, G1Error> {
+    pub(super) fn original(&self, vertex: usize, fan: &mut Fan) -> Result<(), G1Error> {
         let star = Star::of(&self.mesh, vertex)?;
         let normal = self.normal(vertex)?;
         let axes = axes(&normal).ok_or(G1Error::BadNormal { vertex })?;
         let at = self.place(vertex);
-        let (t, e) = (Ring::all([0; 2]), Ring::all([0; 3]));
-        let (kappa, m) = (Ring::all(0), Ring::all(0));
-        let mut fan = Fan { vertex, at, star, axes, t, e, kappa, m, size: 0 };
+        (fan.vertex, fan.at, fan.star, fan.axes) = (vertex, at, star, axes);
         let edge = |i: usize| minus(&self.place(star.to[i].into()), &at);
         let classical = self.options.scheme == Scheme::PointNormal;
         let mut unknown = false;
@@ -153,12 +157,12 @@ impl<C: Coord> Setting<'_, C> {
             let scaled = |c: i64| i64::try_from((i128::from(c) * (factor >> 16) + i128::from(ONE / 2)) >> FACTOR).ok();
             fan.t[i] = fits(scaled(p[0]).zip(scaled(p[1])), vertex)?.into();
         }
-        if !classical && !self.give(&mut fan)? {
-            self.spread(&mut fan, unknown, edge)?;
+        if !classical && !self.give(fan)? {
+            self.spread(fan, unknown, edge)?;
         }
         let sum = (0..star.len).map(|i| u128::from(size(&fan.t[i]))).sum::<u128>();
         fan.size = sum.checked_div(star.len as u128).unwrap_or(0) as i64;
-        Ok(fan)
+        Ok(())
     }
 
     /// The tangents that the caller gives; whether there are any.

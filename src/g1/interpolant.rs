@@ -1,6 +1,7 @@
 //! The surface of a mesh, face by face.
 
 use super::balance::View;
+use super::fan::Fan;
 use super::setting::Setting;
 use super::shift::Shift;
 use super::{Controls, G1Error, List, Options, Quality, Scheme};
@@ -39,7 +40,7 @@ impl<'a, C: Coord> Interpolant<'a, C> {
     /// The surface over a mesh. This is the first pass, which looks at all vertices and fills in `shifts`, a byte a vertex.
     ///
     /// Cost: the tangents of each vertex once, those of a vertex of even valence and its neighbours up to four times, and
-    /// for each whose tangents move those of its neighbours' neighbours. About 14 KB of stack.
+    /// for each whose tangents move those of its neighbours' neighbours. About 12 KB of stack on a Cortex-M.
     ///
     /// # Errors
     /// [`G1Error`] for lists of a wrong length, tensions, tangents and twists that are not legal, faces with more than three
@@ -58,9 +59,10 @@ impl<'a, C: Coord> Interpolant<'a, C> {
         let setting = Setting::new(mesh, controls, options)?;
         shifts.fill(Shift::NONE);
         if options.scheme != Scheme::Flat {
+            let mut fan = Fan::blank();
             for vertex in 0..given {
                 if mesh.leaving(vertex).is_some() {
-                    setting.fan(vertex, Shift::NONE)?;
+                    setting.fan(vertex, Shift::NONE, &mut fan)?;
                 }
             }
         }
@@ -82,7 +84,7 @@ impl<'a, C: Coord> Interpolant<'a, C> {
     /// The quintic triangle of a face, its corners in the order of the face's, rounded once, half up.
     ///
     /// Points shared with a neighbour are the same bits there. Cost: three systems of at most 16 rows and the tangents of
-    /// their vertices' neighbours. About 16 KB of stack.
+    /// their vertices' neighbours. About 18 KB of stack on a Cortex-M.
     ///
     /// # Errors
     /// [`G1Error::Face`], [`G1Error::VertexInconsistent`], [`G1Error::EdgeSingular`]; [`G1Error::Overflow`] where a control

@@ -59,7 +59,8 @@ pub(super) fn fill(edge: &mut Edge, from: &End, to: &End) -> Result<(), G1Error>
         let far = side(edge, 3, (lambda0, mu0)).0;
         let e2 = minus(&edge.c[3], &edge.c[2]);
         // 6·(λ₁ − λ₀)·D2 = 4·(near − far) − 6·(μ₁ − μ₀)·E2
-        let mut sum = Sum3([0, 1, 2].map(|c| near[c].saturating_sub(far[c]).saturating_mul(4)));
+        let part = |near: i128, far: i128| near.saturating_sub(far).saturating_mul(4);
+        let mut sum = Sum3([part(near[0], far[0]), part(near[1], far[1]), part(near[2], far[2])]);
         sum.add(&e2, 6 * mu0.wrapping_sub(mu1));
         let d2 = over(Sum3(sum.0.map(|c| c / 6)), slope)?;
         // D*2 = −μ₀·E2 − λ₀·D2 − (2/3)·near
@@ -76,6 +77,7 @@ pub(super) fn fill(edge: &mut Edge, from: &End, to: &End) -> Result<(), G1Error>
 
 /// D*_i + μ·E_i + λ·D_i, in 2^-80.
 fn side(edge: &Edge, i: usize, (lambda, mu): (i64, i64)) -> Sum3 {
+    let i = i % 5;
     let c = &edge.c[i];
     Sum3::default()
         .plus(&minus(&edge.r[i], c), ONE)

@@ -1,7 +1,8 @@
 //! The first pass: which vertices have their tangents moved, and where to (step 3 of the scheme).
 
 use super::G1Error;
-use super::balance::{Balance, View};
+use super::balance::{Balance, Far, View};
+use super::fan::Fan;
 use super::ring::Star;
 use super::setting::Setting;
 use super::shift::{DUE, MOVED, Shift, WEAK};
@@ -97,19 +98,21 @@ impl<C: Coord> Setting<'_, C> {
         may_stay: bool,
         costs: &mut [Option<i64>; Shift::COUNT as usize],
     ) -> Result<Star, G1Error> {
-        let still = self.original(vertex)?;
-        let far = view.far(&still.at, vertex, &still.star)?;
+        let (mut fan, mut far) = (Fan::blank(), Far::blank());
+        self.original(vertex, &mut fan)?;
+        view.far(&fan, &mut far)?;
+        let still = fan.t;
         for (choice, cost) in (0..).zip(costs) {
-            let shift = Shift::choice(choice);
-            let legal = if choice == 0 { may_stay } else { still.moved(shift).is_open() };
-            let Ok(fan) = self.fan(vertex, shift) else { continue };
-            let Ok(balance) = Balance::of(&fan, &far) else { continue };
-            if legal {
+            fan.t = still;
+            fan.move_by(Shift::choice(choice));
+            let legal = if choice == 0 { may_stay } else { fan.is_open() };
+            let balance = if legal { fan.finish().and_then(|()| Balance::of(&fan, &far)) } else { continue };
+            if let Ok(balance) = balance {
                 let weak = if balance.is_weak() { 4 << 24 } else { 0 };
-                *cost = Some(4 * balance.strain(self.tolerance()) + weak + shift.square());
+                *cost = Some(4 * balance.strain(self.tolerance()) + weak + Shift::choice(choice).square());
             }
         }
-        Ok(still.star)
+        Ok(fan.star)
     }
 
     /// Adds the strain of neighbour i to each shift's costs.
@@ -125,13 +128,15 @@ impl<C: Coord> Setting<'_, C> {
         if !Star::of(&self.mesh, neighbour)?.is_even() {
             return Ok(());
         }
-        let fan = view.fan(neighbour)?;
-        let mut far = view.far(&fan.at, neighbour, &fan.star)?;
-        let still = self.original(vertex)?;
-        let at = fan.star.place_of(vertex);
+        let (mut fan, mut far, mut moved) = (Fan::blank(), Far::blank(), Fan::blank());
+        view.fan(neighbour, &mut fan)?;
+        view.far(&fan, &mut far)?;
+        self.original(vertex, &mut moved)?;
+        let (still, at) = (moved.t, fan.star.place_of(vertex));
         for (choice, cost) in (0..).zip(costs) {
             let Some(sum) = cost else { continue };
-            let moved = if choice == 0 { still } else { still.moved(Shift::choice(choice)) };
+            moved.t = still;
+            moved.move_by(Shift::choice(choice));
             let seen = moved.coefficients(i).ok().zip(moved.lifted(i));
             let balance = seen.and_then(|((kappa, m), e)| {
                 (far.kappa[at], far.m[at], far.e[at]) = (kappa, m, e);
@@ -153,7 +158,9 @@ impl<C: Coord> View<'_, '_, C> {
         if !Star::of(&self.setting.mesh, vertex)?.is_even() {
             return Ok(None);
         }
-        let fan = self.fan(vertex)?;
-        Balance::of(&fan, &self.far(&fan.at, vertex, &fan.star)?).map(Some)
+        let (mut fan, mut far) = (Fan::blank(), Far::blank());
+        self.fan(vertex, &mut fan)?;
+        self.far(&fan, &mut far)?;
+        Balance::of(&fan, &far).map(Some)
     }
 }

@@ -32,9 +32,13 @@ impl<'a, C: Coord> Setting<'a, C> {
                 high[c] = high[c].max(bits);
             }
         }
-        let middle = |c: usize| if low[c] <= high[c] { i64::midpoint(low[c], high[c]) } else { 0 };
-        let origin = [0, 1, 2].map(middle);
-        let reach = (0..3).map(|c| high[c].saturating_sub(origin[c]).unsigned_abs()).max().unwrap_or(0);
+        let (mut origin, mut reach) = ([0; 3], 0);
+        for (c, origin) in origin.iter_mut().enumerate() {
+            if low[c] <= high[c] {
+                *origin = i64::midpoint(low[c], high[c]);
+                reach = reach.max(high[c].saturating_sub(*origin).unsigned_abs());
+            }
+        }
         let shift = 40_u32.saturating_sub(bits(reach.into()));
         let setting = Self { mesh: *mesh, controls: *controls, options: *options, origin, shift };
         setting.check()?;
@@ -107,11 +111,12 @@ impl<'a, C: Coord> Setting<'a, C> {
 
     /// A control point in units, half up; `None` outside the legal range.
     pub(super) fn emit(&self, point: &Triple) -> Option<Point3<I32F32>> {
-        let coordinate = |c: usize| {
-            let bits = (i128::from(self.origin[c]) << self.shift) + i128::from(point[c]);
+        let coordinate = |origin: i64, c: i64| {
+            let bits = (i128::from(origin) << self.shift) + i128::from(c);
             I32F32::from_legal_bits(shift_half_up(bits, self.shift))
         };
-        Some(Point3::new(coordinate(0)?, coordinate(1)?, coordinate(2)?))
+        let ([x, y, z], [p, q, r]) = (self.origin, *point);
+        Some(Point3::new(coordinate(x, p)?, coordinate(y, q)?, coordinate(z, r)?))
     }
 
     /// A control point as it is emitted, in 2^-32 units from the middle.

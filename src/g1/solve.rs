@@ -23,6 +23,14 @@ pub(super) struct Solved {
     pub(super) curve_target: Ring<Triple>,
 }
 
+impl Solved {
+    /// A place for a vertex, so that none is copied.
+    pub(super) const fn blank() -> Self {
+        let none = Ring::all([0; 3]);
+        Self { fan: Fan::blank(), w: none, twist_target: none, z: none, curve_target: none }
+    }
+}
+
 /// The twist point of the degree-elevated PN triangle, from its vertex:
 /// (20·(e₁ + e₂) + 4·(d₁ + d₂) + 5·Σe)/40 with all six tangents of the face in the sum.
 fn twist_target(fan: &Fan, far: &Far, i: usize) -> Option<Triple> {
@@ -35,20 +43,17 @@ fn twist_target(fan: &Fan, far: &Far, i: usize) -> Option<Triple> {
 impl<C: Coord> View<'_, '_, C> {
     /// A vertex with all its points.
     #[inline(never)]
-    pub(super) fn solved(&self, vertex: usize) -> Result<Solved, G1Error> {
-        let fan = self.fan(vertex)?;
-        let far = self.far(&fan.at, vertex, &fan.star)?;
-        let mut solved = self.targets(fan, &far)?;
-        if self.setting.options.scheme == Scheme::Smooth {
-            self.solve(&mut solved, &far)?;
-        }
-        Ok(solved)
+    pub(super) fn solved(&self, vertex: usize, solved: &mut Solved) -> Result<(), G1Error> {
+        let mut far = Far::blank();
+        self.fan(vertex, &mut solved.fan)?;
+        self.far(&solved.fan, &mut far)?;
+        self.targets(solved, &far)?;
+        if self.setting.options.scheme == Scheme::Smooth { self.solve(solved, &far) } else { Ok(()) }
     }
 
     #[inline(never)]
-    fn targets(&self, fan: Fan, far: &Far) -> Result<Solved, G1Error> {
-        let none = Ring::all([0; 3]);
-        let mut solved = Solved { fan, w: none, twist_target: none, z: none, curve_target: none };
+    fn targets(&self, solved: &mut Solved, far: &Far) -> Result<(), G1Error> {
+        let fan = &solved.fan;
         for i in 0..fan.star.len {
             solved.z[i] = fits(curve_target(&fan.e[i], &far.e[i], &far.d[i]), fan.vertex)?;
         }
@@ -56,39 +61,38 @@ impl<C: Coord> View<'_, '_, C> {
         let literal = self.setting.options.scheme == Scheme::Literal;
         for i in 0..fan.star.sectors() {
             let given = self.setting.given_twist(fan.star.left[i]).map(|point| minus(&point, &fan.at));
-            solved.twist_target[i] = fits(given.or_else(|| twist_target(&fan, far, i)), fan.vertex)?;
+            solved.twist_target[i] = fits(given.or_else(|| twist_target(fan, far, i)), fan.vertex)?;
             solved.w[i] = solved.twist_target[i];
             if literal {
                 solved.w[i] = fits(literal::twist(&fan.e[i], &fan.e[fan.star.after(i)]), fan.vertex)?;
             }
         }
-        Ok(solved)
+        Ok(())
     }
 
     /// The least change of the targets, c2 weighted by 1/ω, that meets (V) at every inner edge.
     #[inline(never)]
     fn solve(&self, solved: &mut Solved, far: &Far) -> Result<(), G1Error> {
-        let fan = solved.fan;
-        let (first, rows) = fan.star.inner();
+        let fan = &solved.fan;
+        let (vertex, (first, rows)) = (fan.vertex, fan.star.inner());
         if rows == 0 {
             return Ok(());
         }
         let mut omega = Ring::all(0);
         for i in first..first + rows {
-            let (k, m) = differences(&fan, far, i);
+            let (k, m) = differences(fan, far, i);
             omega[i] = weight(k, m);
         }
-        let matrix = matrix(&fan, &omega);
-        let factors = matrix.factored();
+        let factors = matrix(fan, &omega).factored();
         for _ in 0..REFINEMENTS {
             let mut left = residuals(solved, far);
-            if factors.dropped && fan.star.is_even() {
-                spread(&fan, &mut left);
+            if factors.dropped && solved.fan.star.is_even() {
+                spread(&solved.fan, &mut left);
             }
             factors.solve(&mut left);
-            fits(apply(solved, &omega, &left), fan.vertex)?;
+            fits(apply(solved, &omega, &left), vertex)?;
         }
-        let left = residuals(solved, far);
+        let (left, fan) = (residuals(solved, far), &solved.fan);
         let tolerance = i128::from(self.setting.options.tolerance.to_bits());
         for i in 0..rows {
             // In 2^-48: the tolerance, twice, and what rounding the points leaves.
@@ -97,7 +101,7 @@ impl<C: Coord> View<'_, '_, C> {
             let residual = left[i].iter().map(|c| c.unsigned_abs()).max().unwrap_or(0) as i128;
             if residual > most {
                 let residual = self.setting.outward(shift_half_up(residual, 16));
-                return Err(G1Error::VertexInconsistent { vertex: fan.vertex, residual });
+                return Err(G1Error::VertexInconsistent { vertex, residual });
             }
         }
         Ok(())
@@ -157,7 +161,7 @@ fn spread(fan: &Fan, left: &mut Ring<Wide3>) {
 
 /// x += Ω Cᵀ λ, λ in 2^-48.
 fn apply(solved: &mut Solved, omega: &Ring<i64>, lambda: &Ring<Wide3>) -> Option<()> {
-    let fan = solved.fan;
+    let Solved { fan, w, z, .. } = solved;
     let (first, rows) = fan.star.inner();
     for row in 0..rows {
         let (i, lambda) = (first + row, lambda[row]);
@@ -167,13 +171,13 @@ fn apply(solved: &mut Solved, omega: &Ring<i64>, lambda: &Ring<Wide3>) -> Option
             crate::num::narrow([x, y, z])
         };
         let before = fan.star.before(i);
-        solved.w[i] = plus(&solved.w[i], &times(ONE + fan.kappa[i])?);
-        solved.w[before] = plus(&solved.w[before], &times(ONE - fan.kappa[i])?);
+        w[i] = plus(&w[i], &times(ONE + fan.kappa[i])?);
+        w[before] = plus(&w[before], &times(ONE - fan.kappa[i])?);
         let free = (i128::from(fan.m[i] - ONE) * i128::from(omega[i])) >> FACTOR;
-        solved.z[i] = plus(&solved.z[i], &times(free as i64)?);
+        z[i] = plus(&z[i], &times(free as i64)?);
     }
     // Below 2^61, as every vector is.
     let short =
         |vectors: &Ring<Triple>| (0..fan.star.len).all(|i| vectors[i].iter().all(|c| c.unsigned_abs() < 1 << 61));
-    (short(&solved.w) && short(&solved.z)).then_some(())
+    (short(w) && short(z)).then_some(())
 }

@@ -1,0 +1,39 @@
+//! `examples/fw_skin.rs`: a mesh of 200 vertices on an emulated Cortex-M3 gives the host's control points, within 64 KB of
+//! RAM, and without panic, heap or soft float.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../examples/fw_skin.rs"]
+#[allow(dead_code, reason = "its `main` is for `cargo run`")]
+mod example;
+#[path = "common/firmware.rs"]
+mod firmware;
+
+/// Shifts and stack, in bytes: measured, with a little room.
+const MOST: usize = 20 * 1024;
+
+#[test]
+fn a_mesh_of_200_vertices_streams_within_64_kilobytes() {
+    let mut host = String::new();
+    example::report(&mut host).unwrap();
+    assert_eq!(host.lines().count(), 2, "{host}");
+    let target = "thumbv7m-none-eabi";
+    if !firmware::target_is_installed(target) {
+        return firmware::skip(target, &format!("the Rust target (rustup target add {target})"));
+    }
+    let runner = firmware::runner_of(target);
+    if !firmware::program_is_installed(&runner[0]) {
+        return firmware::skip(target, &runner[0]);
+    }
+    let level = [("CARGO_PROFILE_RELEASE_OPT_LEVEL", "s")];
+    let image = firmware::cargo("build", target, &["--example", "fw_skin"], &level).join("examples/fw_skin");
+    let elf = std::fs::read(&image).unwrap();
+    let offences: Vec<_> =
+        firmware::symbols(&elf).into_iter().filter(|name| firmware::offence(name).is_some()).collect();
+    assert_eq!(offences, [""; 0]);
+    let said = firmware::run(&runner, &image);
+    let (flash, statics) = firmware::sizes(&elf);
+    println!("{said}{flash} bytes of flash");
+    let ram = said.strip_prefix(&host).and_then(|rest| rest.trim().strip_prefix("RAM ")).map(str::parse::<usize>);
+    let ram = ram.unwrap_or_else(|| panic!("the board says {said}, the host {host}")).unwrap() + statics as usize;
+    assert!(ram <= MOST, "{ram} bytes of RAM");
+}
