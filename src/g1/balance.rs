@@ -148,11 +148,11 @@ impl Balance {
             let target = fits(curve_target(&fan.e[i], &far.e[i], &far.d[i]), fan.vertex)?;
             let row = right_side(fan, far, i).plus(&target, 4 * (ONE - fan.m[i]));
             let row = fits(row.narrow(FACTOR + 2), fan.vertex)?;
-            left.add(&row, if i % 2 == 0 { weights[i] } else { -weights[i] });
+            left.add(&row, if i.is_multiple_of(2) { weights[i] } else { -weights[i] });
             let (k, m) = differences(fan, far, i);
             squares += u128::from(weights[i].unsigned_abs()).pow(2);
             let part = (u128::from(weights[i].unsigned_abs()) * u128::from((ONE - fan.m[i]).unsigned_abs())) >> FACTOR;
-            capacity += ((part * part >> FINE) * u128::from(weight(k, m).unsigned_abs())) >> FACTOR;
+            capacity += (((part * part) >> FINE) * u128::from(weight(k, m).unsigned_abs())) >> FACTOR;
         }
         let left = length(&fits(narrow(left.0.map(|c| shift_half_up(c, FINE))), fan.vertex)?);
         let size = (i128::from(fan.size) * i128::from(root(squares))) >> FINE;

@@ -26,7 +26,7 @@ impl Ratios {
         let (lambda0, lambda1) = (ratio(right, left, FACTOR)?, ratio(far_left, far_right, FACTOR)?);
         let far_divisor = ratio(far_across, far_right, FACTOR)?;
         let mu = [ratio(-across, left, FACTOR)?, far_divisor.checked_sub(ONE.checked_add(lambda1)?)?];
-        let small = |c: &i64| c.unsigned_abs() < 1 << (FACTOR + 12);
+        let small = |c: &i64| c.unsigned_abs() < 1 << (FACTOR + 11);
         let all = [lambda0, lambda1, mu[0], mu[1], far_divisor];
         all.iter().all(small).then_some(Self { lambda: [lambda0, lambda1], mu, far_divisor })
     }

@@ -24,6 +24,11 @@
 //! with products in 128 bits, coefficients of 2^-48. Angles decide whether and where tangents are spread; no other result
 //! depends on their last bits.
 //!
+#![doc = include_str!("../../docs/img/g1.md")]
+//!
+//! *An icosahedron, a torus and a duck: flat, as PN triangles, and smooth. Stripes that a surface reflects are torn where its
+//! tangent plane is (`examples/g1.rs`).*
+//!
 //! # Which meshes
 //! Closed ones, and open ones with borders and holes; up to 16 edges a vertex. Corners of the mesh are met exactly, and
 //! control points of flat regions lie in their plane. In exchange for smoothness the shape may suffer where the input is rough:

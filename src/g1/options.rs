@@ -43,7 +43,7 @@ pub struct Options {
     /// Whether tangents must stay as they are. Then a vertex of even valence may have no solution.
     pub strict: bool,
     /// By how much the equations of a vertex may be missed, relative to the mean length of its tangents, before its
-    /// tangents are moved; at least 2^-29, the default. More keeps nearly symmetrical meshes in shape and costs an angle
+    /// tangents are moved; 2^-29, the default, to 1. More keeps nearly symmetrical meshes in shape and costs an angle
     /// of about this size, in radians, between their faces.
     pub tolerance: I32F32,
 }

@@ -6,7 +6,9 @@ use super::face::{Points, index};
 use super::setting::Setting;
 use super::{G1Error, Scheme};
 use crate::mesh::HalfEdge;
-use crate::num::{Coord, I32F32, Sum3, Triple, UNIT, arctangent, cross, dot, length, minus, ratio, shortened, unit};
+use crate::num::{
+    BINOMIAL, Coord, I32F32, Sum3, Triple, UNIT, arctangent, cross, dot, length, minus, ratio, shortened, unit,
+};
 
 /// How smooth a surface is, and how far it is from the cubic one that it starts from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -85,16 +87,20 @@ fn edge_angle(edge: &Edge) -> u64 {
 /// Steps of the lattice on which normals of a face are compared.
 const STEPS: usize = 6;
 
+/// n!/(i!·j!·k!) for j + k = row and i + row = n.
+fn ways(n: usize, row: usize, k: usize) -> i64 {
+    let choose = |n: usize, k: usize| BINOMIAL.get(n).and_then(|row| row.get(k)).map_or(0, |ways| i64::from(*ways));
+    choose(n, row) * choose(row, k)
+}
+
 /// The two partial derivatives of a quintic triangle at (i, j, k)/6, up to a factor.
 fn partials(points: &Points, at: [usize; 3]) -> [Triple; 2] {
-    const FACTORIALS: [i64; 5] = [1, 1, 2, 6, 24];
     let mut sums = [Sum3::default(); 2];
     let power = |c: usize, exponent: usize| (at[c] as i64).pow(exponent as u32);
     for row in 0..=4 {
         for k in 0..=row {
             let (i, j) = (4 - row, row - k);
-            let ways = 24 / (FACTORIALS[i] * FACTORIALS[j] * FACTORIALS[k]);
-            let weight = ways * power(0, i) * power(1, j) * power(2, k);
+            let weight = ways(4, row, k) * power(0, i) * power(1, j) * power(2, k);
             let corner = points[index(j, k) % 21];
             sums[0].add(&minus(&points[index(j + 1, k) % 21], &corner), weight);
             sums[1].add(&minus(&points[index(j, k + 1) % 21], &corner), weight);
@@ -105,7 +111,6 @@ fn partials(points: &Points, at: [usize; 3]) -> [Triple; 2] {
 
 /// The largest distance between two quintic triangles at the same parameters.
 fn largest_change(points: &Points, target: &Points) -> u64 {
-    const FACTORIALS: [i64; 6] = [1, 1, 2, 6, 24, 120];
     let places = (0..=STEPS).flat_map(|j| (0..=STEPS - j).map(move |k| [STEPS - j - k, j, k]));
     let change = |at: [usize; 3]| {
         let power = |c: usize, exponent: usize| (at[c] as i64).pow(exponent as u32);
@@ -113,9 +118,11 @@ fn largest_change(points: &Points, target: &Points) -> u64 {
         for row in 0..=5 {
             for k in 0..=row {
                 let (i, j) = (5 - row, row - k);
-                let ways = 120 / (FACTORIALS[i] * FACTORIALS[j] * FACTORIALS[k]);
                 let place = index(j, k) % 21;
-                sum.add(&minus(&points[place], &target[place]), ways * power(0, i) * power(1, j) * power(2, k));
+                sum.add(
+                    &minus(&points[place], &target[place]),
+                    ways(5, row, k) * power(0, i) * power(1, j) * power(2, k),
+                );
             }
         }
         sum.divide((STEPS as i64).pow(5)).map_or(u64::MAX, |change| length(&change))

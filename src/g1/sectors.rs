@@ -119,7 +119,7 @@ fn equalise(angles: &mut Ring<u64>, n: usize, total: u128) -> bool {
     let tau = i128::from(tau.min(1 << 32));
     for i in 0..n {
         let phi = i128::from(angles[i]);
-        angles[i] = (phi + ((equal - phi) * tau >> 32)).clamp(0, i128::from(u64::MAX)) as u64;
+        angles[i] = (phi + (((equal - phi) * tau) >> 32)).clamp(0, i128::from(u64::MAX)) as u64;
     }
     tau > 0
 }

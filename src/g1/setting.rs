@@ -40,7 +40,9 @@ impl<'a, C: Coord> Setting<'a, C> {
             }
         }
         let shift = 40_u32.saturating_sub(bits(reach.into()));
-        let setting = Self { mesh: *mesh, controls: *controls, options: *options, origin, shift };
+        let tolerance = options.tolerance.clamp(Options::LEAST_TOLERANCE, I32F32::ONE);
+        let options = Options { tolerance, ..*options };
+        let setting = Self { mesh: *mesh, controls: *controls, options, origin, shift };
         setting.check()?;
         Ok(setting)
     }

@@ -67,7 +67,7 @@ impl Shift {
 
     /// The square of the length in 2^-24.
     pub(super) const fn square(self) -> i64 {
-        (self.length() * self.length() << 24) / 400
+        ((self.length() * self.length()) << 24) / 400
     }
 
     /// The same with a mark of the search set or not.

@@ -148,7 +148,7 @@ fn residuals(solved: &Solved, far: &Far) -> Ring<Wide3> {
 /// Takes from the rows what no choice of twists can meet, where nothing else is free: their part along the weights of (W).
 fn spread(fan: &Fan, left: &mut Ring<Wide3>) {
     let weights = row_weights(fan);
-    let signed = |i: usize| i128::from(if i % 2 == 0 { weights[i] } else { -weights[i] });
+    let signed = |i: usize| i128::from(if i.is_multiple_of(2) { weights[i] } else { -weights[i] });
     let squares = (0..fan.star.len).map(|i| (signed(i) * signed(i)) >> FINE).sum::<i128>();
     for c in 0..3 {
         let sum = (0..fan.star.len).fold(0_i128, |sum, i| sum.saturating_add(signed(i).saturating_mul(left[i][c])));
