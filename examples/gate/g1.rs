@@ -25,7 +25,7 @@ pub(super) fn calls(sum: &mut Sum) {
     let mut points = hide(CUBE).map(|[x, y, z]| Point3::<I16F16>::from_ints(x, y, z));
     points[5].x += I16F16::from_bits(hide(77_777));
     let Ok(closed) = Links::<8, 36>::new(8, hide(Faces::Triangles(&TRIANGLES))) else { return };
-    let Ok(open) = Links::<8, 36>::new(8, hide(Faces::Triangles(&TRIANGLES[..7]))) else { return };
+    let Ok(open) = Links::<8, 36>::new(8, hide(Faces::Triangles(&TRIANGLES[..6]))) else { return };
     let Ok(quads) = Links::<8, 36>::new(8, hide(Faces::Quads(&[[0, 1, 3, 2]]))) else { return };
     let normals = points.map(|p| Vector3::from_array(Point3::<I32F32>::from(p).to_array()));
     let tension = [I16F16::from_bits(hide(9_999)); 8];
