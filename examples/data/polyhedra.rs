@@ -5,13 +5,13 @@ use std::f64::consts::TAU;
 
 pub(crate) fn icosahedron() -> Polyhedron {
     let golden = (1.0 + 5_f64.sqrt()) / 2.0;
-    let mut points = Vec::new();
+    let mut points: Vec<[f64; 3]> = Vec::new();
     for (a, b) in [(1.0, golden), (-1.0, golden), (1.0, -golden), (-1.0, -golden)] {
         points.extend([[0.0, a, b], [a, b, 0.0], [b, 0.0, a]]);
     }
     // Faces are the triples at distance 2 of each other, turned outward.
     let near = |i: usize, j: usize| {
-        let square: f64 = (0..3).map(|c| (points[i][c] - points[j][c] as f64).powi(2)).sum();
+        let square: f64 = (0..3).map(|c| (points[i][c] - points[j][c]).powi(2)).sum();
         (square - 4.0).abs() < 1e-9
     };
     let mut faces = Vec::new();

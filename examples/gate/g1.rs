@@ -63,7 +63,7 @@ pub(super) fn calls(sum: &mut Sum) {
 fn surface(sum: &mut Sum, mesh: &Mesh<'_>, controls: &Controls<'_>, options: &Options) {
     let mut shifts = [Shift::NONE; 8];
     let surface = Interpolant::new(mesh, controls, options, &mut shifts);
-    sum.add(surface.as_ref().map(|surface| Interpolant::shifts(surface)).map_err(|error| *error));
+    sum.add(surface.as_ref().map(Interpolant::shifts).map_err(|error| *error));
     let Ok(surface) = surface else { return };
     for face in hide([0, 3, 99]) {
         sum.add(Interpolant::triangle(&surface, face).map(|triangle| *triangle.points()));
