@@ -10,6 +10,7 @@ use embedded_surfaces::g1::{Controls, G1Error, Interpolant, Lengths, Options, Qu
 use embedded_surfaces::geometry::{Point3, Vector3};
 use embedded_surfaces::mesh::{Faces, Links, Mesh};
 use embedded_surfaces::num::{Coord, I32F32};
+use embedded_surfaces::patch::Triangle;
 use serde_json::{Map, Value};
 
 /// Room for the meshes of case files.
@@ -149,14 +150,15 @@ fn read(case: &Field<'_>) -> Result<Case, Malformed> {
     Ok(Case { points, corners, ends, normals, tangents, options, divisor })
 }
 
-/// `[[[i, j, k], [x, y, z]], …]` of a face.
-fn control_points(points: &[Point3<I32F32>; 21], divisor: f64) -> Value {
-    let order = (0..=5_u8).rev().flat_map(|i| (0..=5 - i).rev().map(move |j| [i, j, 5 - i - j]));
+/// `[[[i, j, k], [x, y, z]], …]` of a face, i ascending, then j ascending, as in the reference cases.
+fn control_points(triangle: &Triangle<5, 21, I32F32>, divisor: f64) -> Value {
+    let order = (0..=5).flat_map(|i| (0..=5 - i).map(move |j| [i, j, 5 - i - j]));
     let place = |p: &Point3<I32F32>| p.to_array().map(|c| Value::from(c.to_bits() as f64 / 4_294_967_296.0 / divisor));
-    let entry = |(index, p): ([u8; 3], &Point3<I32F32>)| -> Value {
-        vec![Value::from(index.to_vec()), Value::from(place(p).to_vec())].into()
+    let entry = |[i, j, k]: [usize; 3]| -> Option<Value> {
+        let place = place(triangle.point(i, j, k)?);
+        Some(vec![Value::from(vec![i, j, k]), Value::from(place.to_vec())].into())
     };
-    order.zip(points).map(entry).collect()
+    order.filter_map(entry).collect()
 }
 
 fn quality(quality: &Quality, folded: Vec<usize>) -> Value {
@@ -182,7 +184,7 @@ fn interpolate(case: &Case, mesh: &Mesh<'_, I32F32>) -> Result<Map<String, Value
             folded.push(face);
         }
     }
-    let points = triangles.iter().map(|triangle| control_points(triangle.points(), case.divisor)).collect();
+    let points = triangles.iter().map(|triangle| control_points(triangle, case.divisor)).collect();
     Ok(Map::from_iter([
         ("status".to_owned(), "ok".into()),
         ("control_points".to_owned(), points),
