@@ -1,100 +1,85 @@
-//! Instructions a point under QEMU, exactly. The image takes more than the 256 KB of `memory.x`:
+//! Instructions a point under QEMU, exactly. The image takes more than the 256 KB of `memory.x`, and a picture of
+//! 320 × 240 pixels more than its 64 KB of RAM:
 //!
 //! ```sh
 //! cargo run --release --target thumbv7em-none-eabihf --example fw_bench \
 //!     --config 'target.thumbv7em-none-eabihf.rustflags=["-Clink-arg=--defsym=_flash_of_mps2=1"]'
 //! ```
 //!
-//! A line per row: `name: N instructions, P points, sum S`. The sink of all rows is the wrapping sum of the coordinates.
+//! A line per row: `name: N instructions, P points, sum S`. F is how many fraction bits the net uses. Of each lattice
+//! * `generation` makes the points, set-up included; the sink is the wrapping sum of the coordinates;
+//! * `depth test and store` makes the same points, and the nearest of each pixel leaves 16 bits of depth and 16 of
+//!   colour; the sum is that of the depths. Clearing is not counted.
+//!
+//! The crate shades no lattice of the caller's: `scene, shaded` draws the patch by a [`Scene`] into a cleared [`Tile`],
+//! with the points and pieces that the renderer chooses, exact normals after the depth test; its points are counted, its
+//! sum is that of the levels.
+//!
 //! `tests/firmware_bench.rs` compares the counts with `tests/budgets.txt` and the sums with the host's.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[path = "board/counter.rs"]
 mod counter;
+#[path = "data/nets.rs"]
+mod nets;
+#[path = "board/room.rs"]
+mod room;
 #[path = "board/run.rs"]
 mod run;
 
 use core::hint::black_box;
-use embedded_surfaces::const_net;
 use embedded_surfaces::forward::{Lattice, Steps};
 use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::patch::{BicubicPatch, CubicTriangle, QuinticTriangle, Surface, SurfaceNet};
+use embedded_surfaces::render::{Area, Fragment, Light, Scene, Style, Tile};
 
-/// The P of Huang and Zhu 2002.
-const SEED_NET: CubicTriangle = const_net!(CubicTriangle::from_ints([
-    [180, 20, 150],
-    [100, 60, 100],
-    [200, 180, 380],
-    [100, 120, 160],
-    [160, 140, 400],
-    [300, 120, 100],
-    [40, 200, 60],
-    [200, 200, 360],
-    [100, 220, 60],
-    [300, 200, 300],
-]));
-static SEED: CubicTriangle = SEED_NET;
-static SEED_4: CubicTriangle = with_fraction(4);
-static SEED_8: CubicTriangle = with_fraction(8);
-static SEED_16: CubicTriangle = with_fraction(16);
+const AREA: Area = Area { x: 0, y: 0, width: 320, height: 240 };
+/// Fraction bits that the nets use.
+const FRACTIONS: [u32; 4] = [0, 4, 8, 16];
 
-/// The seed patch with a point moved by 2^-bits, so that the net uses so many fraction bits.
-#[allow(clippy::panic, reason = "at compile time")]
-const fn with_fraction(bits: u32) -> CubicTriangle {
-    let mut points = *SEED_NET.points();
-    let p = points[4];
-    points[4] = Point3::from_bits(p.x.to_bits() + (1 << (16 - bits)), p.y.to_bits(), p.z.to_bits());
-    match CubicTriangle::new(points) {
-        Ok(net) => net,
-        Err(_) => panic!("the net is not legal"),
-    }
+/// A picture.
+struct Screen {
+    colour: [u16; AREA.pixels()],
+    depth: [u16; AREA.pixels()],
 }
 
-static BICUBIC: BicubicPatch = const_net!(BicubicPatch::from_ints([
-    [[12, 7, 0], [5, 38, 60], [21, 70, -40], [9, 104, 10]],
-    [[40, -3, 35], [44, 31, -50], [37, 73, 80], [42, 99, 0]],
-    [[71, 11, -20], [66, 29, 90], [75, 64, -30], [68, 110, 25]],
-    [[103, 2, 5], [110, 41, -60], [97, 66, 45], [106, 95, -15]],
-]));
+/// The nets of a number of fraction bits: the whole ones, with an inner point moved by 2^-bits.
+struct Nets {
+    cubic: CubicTriangle,
+    bicubic: BicubicPatch,
+    quintic: QuinticTriangle,
+}
 
-static QUINTIC: QuinticTriangle = const_net!(QuinticTriangle::from_ints([
-    [0, 0, 9],
-    [12, 3, 7],
-    [3, 11, 20],
-    [25, 2, -7],
-    [14, 13, 30],
-    [2, 26, 1],
-    [37, 4, 5],
-    [26, 15, 12],
-    [15, 24, 22],
-    [1, 39, 3],
-    [52, 3, 9],
-    [38, 12, 40],
-    [27, 26, 0],
-    [13, 37, 17],
-    [4, 50, 9],
-    [60, 0, 2],
-    [51, 13, 8],
-    [40, 25, 31],
-    [25, 38, 4],
-    [12, 49, 9],
-    [0, 61, 5],
-]));
+impl Nets {
+    fn with_fraction(bits: u32) -> Option<Self> {
+        let moved = |p: Point3| {
+            let by = if bits == 0 { 0 } else { 1 << (16 - bits) };
+            Point3::from_bits(p.x.to_bits() + by, p.y.to_bits(), p.z.to_bits())
+        };
+        let mut cubic = *CubicTriangle::from_ints(nets::SEED_P).ok()?.points();
+        let mut bicubic = *BicubicPatch::from_ints(nets::BICUBIC).ok()?.points();
+        let mut quintic = *QuinticTriangle::from_ints(nets::QUINTIC).ok()?.points();
+        for point in [&mut cubic[4], &mut bicubic[1][1], &mut quintic[7]] {
+            *point = moved(*point);
+        }
+        Some(Self {
+            cubic: CubicTriangle::new(cubic).ok()?,
+            bicubic: BicubicPatch::new(bicubic).ok()?,
+            quintic: QuinticTriangle::new(quintic).ok()?,
+        })
+    }
 
-/// Name, net and steps.
-fn rows() -> [(&'static str, SurfaceNet<'static>, u32); 10] {
-    [
-        ("cubic n=256 F=0", SEED.surface(), 256),
-        ("cubic n=256 F=4", SEED_4.surface(), 256),
-        ("cubic n=256 F=8", SEED_8.surface(), 256),
-        ("cubic n=256 F=16", SEED_16.surface(), 256),
-        ("cubic n=1024 F=0", SEED.surface(), 1024),
-        ("cubic n=1024 F=8", SEED_8.surface(), 1024),
-        ("bicubic n=256 F=0", BICUBIC.surface(), 256),
-        ("quintic n=256 F=0", QUINTIC.surface(), 256),
-        ("cubic n=300 F=0", SEED.surface(), 300),
-        ("cubic n=300 F=16", SEED_16.surface(), 300),
-    ]
+    /// Name, net and steps of the lattices.
+    fn lattices(&self) -> [(&'static str, SurfaceNet<'_>, u32); 5] {
+        let (cubic, bicubic, quintic) = (self.cubic.surface(), self.bicubic.surface(), self.quintic.surface());
+        [
+            ("cubic n=256", cubic, 256),
+            ("cubic n=1024", cubic, 1024),
+            ("cubic n=300", cubic, 300),
+            ("bicubic n=256", bicubic, 256),
+            ("quintic n=256", quintic, 256),
+        ]
+    }
 }
 
 /// What a row gives, whatever it costs.
@@ -114,6 +99,35 @@ fn generate(net: SurfaceNet<'_>, steps: u32, total: &mut Total) {
     *total = Total { points: lattice.point_count() as u32, sum };
 }
 
+/// The points into a depth buffer, as a caller with no renderer would write it.
+#[inline(never)]
+fn store(net: SurfaceNet<'_>, steps: u32, screen: &mut Screen, total: &mut Total) {
+    let lattice = Steps::uniform(steps).and_then(|steps| Lattice::new(net, steps));
+    let Ok(lattice) = lattice else { return };
+    let Screen { colour, depth } = screen;
+    lattice.for_each(|p| {
+        let (x, y) = (p.x as u32, p.y as u32);
+        if x >= AREA.width || y >= AREA.height {
+            return;
+        }
+        let at = (y * AREA.width + x) as usize;
+        let z = p.z.wrapping_add(1 << 15) as u16;
+        if let (Some(depth), Some(colour)) = (depth.get_mut(at), colour.get_mut(at))
+            && z < *depth
+        {
+            (*depth, *colour) = (z, p.i as u16);
+        }
+    });
+    total.points = lattice.point_count() as u32;
+}
+
+/// The patch as the renderer draws it.
+#[inline(never)]
+fn shade(net: SurfaceNet<'_>, tile: &mut Tile<'_, u16>, total: &mut Total) {
+    let Ok(scene) = Scene::new(core::slice::from_ref(&net), Light::default(), Style::Shaded) else { return };
+    total.points = scene.draw(tile, &|at: Fragment| u16::from(at.shade)).points as u32;
+}
+
 /// A row whose count is known: an instruction a point.
 #[inline(never)]
 fn nops() {
@@ -124,17 +138,64 @@ fn nops() {
     }
 }
 
+fn sum_of(values: &[u16]) -> i32 {
+    values.iter().fold(0, |sum, value| sum.wrapping_add(i32::from(*value)))
+}
+
 /// Writes a line per row.
 pub(crate) fn report(out: &mut impl core::fmt::Write) -> core::fmt::Result {
+    let screen = room::room!(Screen, Screen { colour: [0; AREA.pixels()], depth: [0; AREA.pixels()] });
     writeln!(out, "nops: {} instructions, 1000 points, sum 0", counter::count(nops))?;
-    for (name, net, steps) in rows() {
-        let (net, steps) = black_box((net, steps));
-        let mut total = Total::default();
-        let instructions = counter::count(|| generate(net, steps, &mut total));
-        let Total { points, sum } = black_box(total);
-        writeln!(out, "{name}, generation: {instructions} instructions, {points} points, sum {sum}")?;
+    for bits in FRACTIONS {
+        let nets = Nets::with_fraction(bits).ok_or(core::fmt::Error)?;
+        for (name, net, steps) in nets.lattices() {
+            lattice_rows(out, (name, bits), black_box((net, steps)), screen)?;
+        }
+        for (name, net) in
+            [("cubic", nets.cubic.surface()), ("bicubic", nets.bicubic.surface()), ("quintic", nets.quintic.surface())]
+        {
+            scene_row(out, (name, bits), black_box(net), screen)?;
+        }
     }
     Ok(())
+}
+
+fn lattice_rows(
+    out: &mut impl core::fmt::Write,
+    (name, bits): (&str, u32),
+    (net, steps): (SurfaceNet<'_>, u32),
+    screen: &mut Screen,
+) -> core::fmt::Result {
+    let mut total = Total::default();
+    let instructions = counter::count(|| generate(net, steps, &mut total));
+    write_row(out, (name, bits, "generation"), instructions, &total)?;
+    screen.depth.fill(u16::MAX);
+    let instructions = counter::count(|| store(net, steps, screen, &mut total));
+    total.sum = sum_of(&screen.depth);
+    write_row(out, (name, bits, "depth test and store"), instructions, &total)
+}
+
+fn scene_row(
+    out: &mut impl core::fmt::Write,
+    (name, bits): (&str, u32),
+    net: SurfaceNet<'_>,
+    screen: &mut Screen,
+) -> core::fmt::Result {
+    let mut total = Total::default();
+    let mut tile = Tile::new(AREA, &mut screen.colour, &mut screen.depth, 0).map_err(|_| core::fmt::Error)?;
+    let instructions = counter::count(|| shade(net, &mut tile, &mut total));
+    total.sum = sum_of(tile.pixels());
+    write_row(out, (name, bits, "scene, shaded"), instructions, &total)
+}
+
+fn write_row(
+    out: &mut impl core::fmt::Write,
+    (name, bits, what): (&str, u32, &str),
+    instructions: u32,
+    total: &Total,
+) -> core::fmt::Result {
+    let Total { points, sum } = total;
+    writeln!(out, "{name} F={bits}, {what}: {instructions} instructions, {points} points, sum {sum}")
 }
 
 #[cfg(not(target_os = "none"))]

@@ -12,9 +12,7 @@ mod fw_smoke;
 mod firmware;
 
 use embedded_surfaces::geometry::Point3;
-use firmware::{
-    cargo_build, offence, program_is_installed, run, runner, runner_of, skip, symbols, target_is_installed,
-};
+use firmware::{cargo_build, installed, installed_runner, offence, run, runner, symbols};
 
 #[test]
 fn thumbv6m() {
@@ -38,8 +36,8 @@ fn riscv32imc() {
 
 /// The library alone, then every firmware with what it prints.
 fn check(target: &str) {
-    if !target_is_installed(target) {
-        return skip(target, &format!("the Rust target (rustup target add {target})"));
+    if installed(&[target]).is_empty() {
+        return;
     }
     cargo_build(target, &["--lib", "--no-default-features"]);
     check_example(target, "fw_smoke", &expected_line());
@@ -53,10 +51,7 @@ fn check_example(target: &str, example: &str, expected: &str) {
     let offences: Vec<_> = names.iter().filter_map(|name| Some((offence(name)?, name))).collect();
     assert!(offences.is_empty(), "{example} on {target}: {offences:#?}");
 
-    let runner = runner_of(target);
-    if !program_is_installed(&runner[0]) {
-        return skip(target, &runner[0]);
-    }
+    let Some(runner) = installed_runner(target) else { return };
     assert_eq!(run(&runner, &image), expected, "{example} on {target}");
 }
 

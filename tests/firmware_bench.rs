@@ -1,7 +1,7 @@
 //! Instructions under QEMU against `tests/budgets.txt`, compared exactly: `examples/fw_bench.rs` and `fw_cost.rs` for v6-M
 //! code, M4 and RV32. Prints the tables of instructions a point: `cargo test --test firmware_bench -- --nocapture`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-#![allow(clippy::duplicate_mod, reason = "both examples bring their counter")]
+#![allow(clippy::duplicate_mod, reason = "each example brings its counter along")]
 
 #[path = "common/budgets.rs"]
 #[allow(dead_code)]
@@ -15,7 +15,7 @@ mod fw_bench;
 #[allow(dead_code, reason = "its `main` is for `cargo run`")]
 mod fw_cost;
 
-use firmware::{cargo_build_all, program_is_installed, run, runner_of, skip, target_is_installed};
+use firmware::{cargo_build_all, installed, installed_runner, run};
 use fw_cost::{frame, teapot};
 use std::path::Path;
 
@@ -64,14 +64,10 @@ fn a_frame_takes_what_is_budgeted() {
 /// Runs an example on all targets: the same points and sums as here, and the instructions that are budgeted. Returns
 /// each target's rows.
 fn check(example: &str, host: &[Row]) -> Vec<(&'static str, Vec<Row>)> {
-    let installed: Vec<_> = TARGETS.into_iter().filter(|(_, target)| target_is_installed(target)).collect();
-    for (_, target) in TARGETS.iter().filter(|row| !installed.contains(row)) {
-        skip(target, &format!("the Rust target (rustup target add {target})"));
-    }
-    let targets: Vec<_> = installed.iter().map(|(_, target)| *target).collect();
+    let targets = installed(&TARGETS.map(|(_, target)| target));
     let folder = cargo_build_all(&targets, example, &["--example", example]);
     let mut columns = Vec::new();
-    for (short, target) in installed {
+    for (short, target) in TARGETS.into_iter().filter(|(_, target)| targets.contains(target)) {
         let Some(rows) = rows(target, &folder, example) else { continue };
         for (there, here) in rows.iter().zip(host) {
             assert_eq!((&there.name, there.points, there.sum), (&here.name, here.points, here.sum), "{target}");
@@ -87,11 +83,7 @@ fn check(example: &str, host: &[Row]) -> Vec<(&'static str, Vec<Row>)> {
 }
 
 fn rows(target: &str, folder: &Path, example: &str) -> Option<Vec<Row>> {
-    let runner = runner_of(target);
-    if !program_is_installed(&runner[0]) {
-        skip(target, &runner[0]);
-        return None;
-    }
+    let runner = installed_runner(target)?;
     Some(parse(&run(&runner, &folder.join(target).join("release/examples").join(example))))
 }
 

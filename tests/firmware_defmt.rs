@@ -22,17 +22,11 @@ fn the_log_of_thumbv6m_is_as_expected() {
 }
 
 fn check(target: &str) {
-    if !firmware::target_is_installed(target) {
-        return firmware::skip(target, &format!("the Rust target (rustup target add {target})"));
-    }
+    let Some(runner) = firmware::board(target) else { return };
     // The format strings are sections that only this linker script keeps.
     let what = ["--features", "defmt", "--example", "fw_defmt", "--", "-C", "link-arg=-Tdefmt.x"];
     let folder = firmware::cargo("rustc", target, &what, &[firmware::FOR_SIZE]);
     let image = folder.join("examples/fw_defmt");
-    let runner = firmware::runner_of(target);
-    if !firmware::program_is_installed(&runner[0]) {
-        return firmware::skip(target, &runner[0]);
-    }
     let log = decode(&std::fs::read(&image).unwrap(), &firmware::run_bytes(&runner, &image));
     let path = Path::new(firmware::ROOT).join("examples/fw_defmt.out");
     if std::env::var_os("UPDATE_DEFMT").is_some() {

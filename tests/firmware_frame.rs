@@ -30,13 +30,7 @@ fn both_fills_show_the_teapot() {
 /// Runs the firmware with this fill; checks its picture, its RAM and its flash in bytes.
 fn check(fill: &str, most_ram: usize, most_flash: u64) {
     let target = "thumbv7em-none-eabihf";
-    if !firmware::target_is_installed(target) {
-        return firmware::skip(target, &format!("the Rust target (rustup target add {target})"));
-    }
-    let runner = firmware::runner_of(target);
-    if !firmware::program_is_installed(&runner[0]) {
-        return firmware::skip(target, &runner[0]);
-    }
+    let Some(runner) = firmware::board(target) else { return };
     let environment = [firmware::FOR_SIZE, ("FW_FRAME_FILL", fill)];
     let folder = firmware::cargo("build", target, &["--example", "fw_frame"], &environment);
     let image = folder.join("examples").join("fw_frame");

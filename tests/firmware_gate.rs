@@ -17,10 +17,9 @@ mod image;
 #[path = "common/public.rs"]
 mod public;
 
-use firmware::{ROOT, TARGETS, cargo_build_all, offence, run, runner, skip, symbols, target_is_installed};
+use firmware::{ROOT, TARGETS, cargo_build_all, installed, installed_runner, offence, run, symbols};
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::process::Command;
 
 /// Public functions that the gate need not call, with the reason.
 const EXCEPTIONS: [(&str, &str); 0] = [];
@@ -51,10 +50,7 @@ fn is_thorough() -> bool {
 
 /// Builds, reads, weighs and runs the gate on every target.
 fn check(opt_level: &str, features: &str) {
-    let targets: Vec<_> = TARGETS.into_iter().filter(|target| target_is_installed(target)).collect();
-    for target in TARGETS.iter().filter(|target| !targets.contains(target)) {
-        skip(target, &format!("the Rust target (rustup target add {target})"));
-    }
+    let targets = installed(&TARGETS);
     let quoted = if opt_level == "s" { "\"s\"" } else { opt_level };
     let mut what = ["--example", "fw_gate", "--no-default-features", "--features", features].map(String::from).to_vec();
     what.extend(["--config".into(), format!("profile.release.opt-level={quoted}")]);
@@ -79,11 +75,7 @@ fn check(opt_level: &str, features: &str) {
 
 /// The lines of an image with fewer features, or of a host with fewer, are the first of all.
 fn compare_with_host(target: &str, image: &Path, title: &str) {
-    let config = std::fs::read_to_string(Path::new(ROOT).join(".cargo/config.toml")).unwrap();
-    let runner = runner(&config, target);
-    if Command::new(&runner[0]).arg("--version").output().is_err() {
-        return skip(target, &runner[0]);
-    }
+    let Some(runner) = installed_runner(target) else { return };
     let mut host = String::new();
     fw_gate::report(&mut host).unwrap();
     let there = run(&runner, image);

@@ -7,13 +7,7 @@ mod firmware;
 #[test]
 fn drawing_stays_within_the_stack_that_is_promised() {
     let target = "thumbv7em-none-eabihf";
-    if !firmware::target_is_installed(target) {
-        return firmware::skip(target, &format!("the Rust target (rustup target add {target})"));
-    }
-    let runner = firmware::runner_of(target);
-    if !firmware::program_is_installed(&runner[0]) {
-        return firmware::skip(target, &runner[0]);
-    }
+    let Some(runner) = firmware::board(target) else { return };
     let folder = firmware::cargo("build", target, &["--example", "fw_stack"], &[firmware::FOR_SIZE]);
     let said = firmware::run(&runner, &folder.join("examples/fw_stack"));
     println!("{said}");

@@ -81,15 +81,9 @@ fn riscv32imc_sends_the_same() {
 }
 
 fn firmware_sends_the_same(target: &str) {
-    if !firmware::target_is_installed(target) {
-        return firmware::skip(target, &format!("the Rust target (rustup target add {target})"));
-    }
+    let Some(runner) = firmware::board(target) else { return };
     let image =
         firmware::cargo("build", target, &["--example", "mipidsi"], &[firmware::FOR_SIZE]).join("examples/mipidsi");
-    let runner = firmware::runner_of(target);
-    if !firmware::program_is_installed(&runner[0]) {
-        return firmware::skip(target, &runner[0]);
-    }
     let mut expected = String::new();
     example::report(&mut expected).unwrap();
     assert_eq!(firmware::run(&runner, &image), expected);

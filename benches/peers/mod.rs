@@ -4,7 +4,11 @@
 //! `floor(x + 1/2)` is a truncation, folded into the start values; n = 256 makes u, v and w exact in `f32` and
 //! `I16F16`; the differences are set up in `f64`.
 
+#[path = "../../examples/data/nets.rs"]
+mod nets;
+
 use fixed::types::I16F16;
+pub(crate) use nets::SEED_P;
 
 /// What takes the points.
 pub(crate) trait Sink {
@@ -16,20 +20,6 @@ impl<S: Sink + ?Sized> Sink for &mut S {
         (**self).point(i, j, x, y, z);
     }
 }
-
-/// The seed paper's P.
-pub(crate) const SEED_P: [[i16; 3]; 10] = [
-    [180, 20, 150],
-    [100, 60, 100],
-    [200, 180, 380],
-    [100, 120, 160],
-    [160, 140, 400],
-    [300, 120, 100],
-    [40, 200, 60],
-    [200, 200, 360],
-    [100, 220, 60],
-    [300, 200, 300],
-];
 
 /// A cubic triangle and what the peers prepare of it.
 pub(crate) struct Cubic {

@@ -1,5 +1,8 @@
 //! The nets that the calls take, range-checked by the compiler.
 
+#[path = "../data/nets.rs"]
+mod nets;
+
 use embedded_surfaces::const_net;
 use embedded_surfaces::num::I16F16;
 use embedded_surfaces::patch::{
@@ -25,42 +28,9 @@ pub(crate) static ARC: RationalCurve<3> = const_net!(RationalCurve::new(
 ));
 
 /// The P of Huang and Zhu 2002, at a quarter of its size.
-pub(crate) static TRIANGLE: CubicTriangle = const_net!(CubicTriangle::from_ints([
-    [45, 5, 37],
-    [25, 15, 25],
-    [50, 45, 95],
-    [25, 30, 40],
-    [40, 35, 100],
-    [75, 30, 25],
-    [10, 50, 15],
-    [50, 50, 90],
-    [25, 55, 15],
-    [75, 50, 75],
-]));
+pub(crate) static TRIANGLE: CubicTriangle = const_net!(CubicTriangle::from_ints(nets::quartered(nets::SEED_P)));
 
-pub(crate) static QUINTIC: QuinticTriangle = const_net!(QuinticTriangle::from_ints([
-    [0, 0, 9],
-    [12, 3, 7],
-    [3, 11, 20],
-    [25, 2, -7],
-    [14, 13, 30],
-    [2, 26, 1],
-    [37, 4, 5],
-    [26, 15, 12],
-    [15, 24, 22],
-    [1, 39, 3],
-    [52, 3, 9],
-    [38, 12, 40],
-    [27, 26, 0],
-    [13, 37, 17],
-    [4, 50, 9],
-    [60, 0, 2],
-    [51, 13, 8],
-    [40, 25, 31],
-    [25, 38, 4],
-    [12, 49, 9],
-    [0, 61, 5],
-]));
+pub(crate) static QUINTIC: QuinticTriangle = const_net!(QuinticTriangle::from_ints(nets::QUINTIC));
 
 pub(crate) static WEIGHTED: RationalTriangle<2, 6> = const_net!(RationalTriangle::new(
     const_net!(Triangle::<2, 6>::from_ints([[0, 0, 5], [30, 2, 9], [1, 33, 20], [58, 0, 7], [34, 31, 30], [3, 60, 2]])),

@@ -24,14 +24,36 @@ pub(crate) fn skip(target: &str, missing: &str) {
     std::io::stderr().write_all(message.as_bytes()).unwrap();
 }
 
-pub(crate) fn target_is_installed(target: &str) -> bool {
+/// Those of some targets that can be built for; says which cannot.
+pub(crate) fn installed<'t>(targets: &[&'t str]) -> Vec<&'t str> {
+    let (installed, missing): (Vec<_>, Vec<_>) = targets.iter().copied().partition(|t| target_is_installed(t));
+    missing.iter().for_each(|target| skip(target, &format!("the Rust target (rustup target add {target})")));
+    installed
+}
+
+/// The words that start a target's firmware; says where their program is missing.
+pub(crate) fn installed_runner(target: &str) -> Option<Vec<String>> {
+    let runner = runner_of(target);
+    let is_installed = program_is_installed(&runner[0]);
+    if !is_installed {
+        skip(target, &runner[0]);
+    }
+    is_installed.then_some(runner)
+}
+
+/// The words that start a target's firmware, where it can be built and run; else says what is missing.
+pub(crate) fn board(target: &str) -> Option<Vec<String>> {
+    if installed(&[target]).is_empty() { None } else { installed_runner(target) }
+}
+
+fn target_is_installed(target: &str) -> bool {
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let output = Command::new(rustc).current_dir(ROOT).args(["--print", "target-libdir", "--target", target]).output();
     output.is_ok_and(|o| o.status.success() && Path::new(String::from_utf8_lossy(&o.stdout).trim()).is_dir())
 }
 
 /// Whether a program can be started.
-pub(crate) fn program_is_installed(program: &str) -> bool {
+fn program_is_installed(program: &str) -> bool {
     Command::new(program).arg("--version").output().is_ok()
 }
 
@@ -94,7 +116,7 @@ pub(crate) fn cargo_build_all(targets: &[&str], folder: &str, what: &[&str]) -> 
 }
 
 /// What `cargo run` starts a target's firmware by.
-pub(crate) fn runner_of(target: &str) -> Vec<String> {
+fn runner_of(target: &str) -> Vec<String> {
     runner(&std::fs::read_to_string(Path::new(ROOT).join(".cargo/config.toml")).unwrap(), target)
 }
 

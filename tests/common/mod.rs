@@ -4,7 +4,12 @@
 pub(crate) mod basis;
 pub(crate) mod blossom;
 pub(crate) mod draw;
+#[path = "../../examples/data/nets.rs"]
+mod nets;
 pub(crate) mod smooth;
+
+#[allow(unused_imports, reason = "each test binary uses a part")]
+pub(crate) use nets::{SEED_P, SEED_Q};
 
 use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::num::I16F16;
@@ -93,29 +98,3 @@ pub(crate) fn triangle_index(n: usize, (i, j, k): (usize, usize, usize)) -> usiz
 pub(crate) fn points(bits: &[i32]) -> Vec<Point3<I16F16>> {
     bits.chunks_exact(3).map(|c| Point3::from_bits(c[0], c[1], c[2])).collect()
 }
-
-/// The seed paper's cubic triangles P and Q, with q201 = p012 + p003 - p102.
-pub(crate) const SEED_P: [[i16; 3]; 10] = [
-    [180, 20, 150],
-    [100, 60, 100],
-    [200, 180, 380],
-    [100, 120, 160],
-    [160, 140, 400],
-    [300, 120, 100],
-    [40, 200, 60],
-    [200, 200, 360],
-    [100, 220, 60],
-    [300, 200, 300],
-];
-pub(crate) const SEED_Q: [[i16; 3]; 10] = [
-    [300, 200, 300],
-    [100, 220, 60],
-    [100, 300, 260],
-    [200, 200, 360],
-    [140, 280, 20],
-    [240, 200, 200],
-    [40, 200, 60],
-    [140, 280, 260],
-    [50, 300, 220],
-    [180, 360, 140],
-];
