@@ -77,7 +77,7 @@ macro_rules! rows {
 const ROWS: [Row; 11] = rows! {
     "exact, for_each": exact,
     "exact, iterator": exact_iterator,
-    "f32 forward differences, row order, arrays": peers::forward_f32,
+    "f32 forward differences, row order, arrays": peers::forward_f32::<4, _>,
     "f32 forward differences, row order, by hand": peers::forward_f32_by_hand,
     "f32 forward differences, 4 rows in lockstep": peers::forward_f32_rows::<4, _>,
     "f32 forward differences, 8 rows in lockstep": peers::forward_f32_rows::<8, _>,
@@ -85,7 +85,7 @@ const ROWS: [Row; 11] = rows! {
     "f32 forward differences, 8 points of a row in lockstep": peers::forward_f32_lanes::<8, _>,
     "I16F16 Horner": peers::horner_fixed,
     "I16F16 de Casteljau": peers::de_casteljau_fixed,
-    "f32 de Casteljau": peers::de_casteljau_f32,
+    "f32 de Casteljau": peers::de_casteljau_f32::<8, _>,
 };
 
 /// Points of a row that differ from the exact ones.

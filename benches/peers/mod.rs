@@ -40,7 +40,7 @@ impl Cubic {
             let value = |i: usize, j: usize| {
                 let (u, v) = (i as f64 / f64::from(n), j as f64 / f64::from(n));
                 let terms = (0..4).flat_map(|b| (0..4).map(move |a| (a, b)));
-                terms.map(|(a, b)| f64::from(power[b][a]) * u.powi(a as i32) * v.powi(b as i32)).sum::<f64>()
+                terms.map(|(a, b)| f64::from(power[b][a]) * whole_power(u, a) * whole_power(v, b)).sum::<f64>()
             };
             let mut table: [[f64; 4]; 4] = core::array::from_fn(|b| core::array::from_fn(|a| value(a, b)));
             for order in 1..4 {
@@ -65,6 +65,11 @@ impl Cubic {
         }
         Self { n, net, differences, powers }
     }
+}
+
+/// x^n, also where there is no `std`.
+fn whole_power(x: f64, n: usize) -> f64 {
+    (0..n).fold(1.0, |power, _| power * x)
 }
 
 /// `[b][a]`: coefficients of u^a v^b from b[i,j,k] in storage order, by expanding w = 1 − u − v.
@@ -106,7 +111,7 @@ fn next_row(table: &mut [[[f32; 4]; 4]; 4]) {
 /// x, y and z of one point in a vector.
 #[cfg(target_arch = "x86_64")]
 mod quad {
-    use std::arch::x86_64::{__m128, _mm_add_ps, _mm_cvttps_epi32, _mm_loadu_ps, _mm_storeu_si128};
+    use core::arch::x86_64::{__m128, _mm_add_ps, _mm_cvttps_epi32, _mm_loadu_ps, _mm_storeu_si128};
 
     #[derive(Clone, Copy)]
     pub(super) struct Quad(__m128);
@@ -172,15 +177,16 @@ pub(crate) fn forward_f32_by_hand<S: Sink + ?Sized>(cubic: &Cubic, sink: &mut S)
     }
 }
 
-/// Forward differences in row order, in arrays that the compiler may turn into vectors.
+/// Forward differences in row order, in arrays of `A` axes: 4, of which one is idle, for what turns arrays into vectors,
+/// 3 for a core without vectors.
 #[inline(always)]
-pub(crate) fn forward_f32<S: Sink + ?Sized>(cubic: &Cubic, sink: &mut S) {
+pub(crate) fn forward_f32<const A: usize, S: Sink + ?Sized>(cubic: &Cubic, sink: &mut S) {
     let mut table = cubic.differences;
     for j in 0..cubic.n + 1 {
         let [mut x, mut d1, mut d2, d3] = table[0];
         for i in 0..cubic.n - j + 1 {
             sink.point(i, j, truncate(x[0]), truncate(x[1]), truncate(x[2]));
-            for axis in 0..4 {
+            for axis in 0..A {
                 x[axis] += d1[axis];
                 d1[axis] += d2[axis];
                 d2[axis] += d3[axis];
@@ -329,10 +335,9 @@ pub(crate) fn de_casteljau_fixed<S: Sink + ?Sized>(cubic: &Cubic, sink: &mut S) 
 /// degree 0.
 const CORNERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 3, 4], [2, 4, 5], [3, 6, 7], [4, 7, 8], [5, 8, 9]];
 
-/// De Casteljau at each point, 8 neighbours of a row at a time so that it vectorises.
+/// De Casteljau at each point, `L` neighbours of a row at a time so that it vectorises where there are vectors.
 #[inline(always)]
-pub(crate) fn de_casteljau_f32<S: Sink + ?Sized>(cubic: &Cubic, sink: &mut S) {
-    const L: usize = 8;
+pub(crate) fn de_casteljau_f32<const L: usize, S: Sink + ?Sized>(cubic: &Cubic, sink: &mut S) {
     let net: [[f32; 10]; 3] = core::array::from_fn(|axis| cubic.net.map(|p| f32::from(p[axis])));
     let step = 1.0 / cubic.n as f32;
     for j in 0..=cubic.n {
