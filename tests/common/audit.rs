@@ -156,7 +156,7 @@ pub(crate) fn deviation<S: Surface>(patches: &[S], tolerance: f64) -> f64 {
 }
 
 /// The distance of a place from a surface, by Gauss–Newton from parameters near by.
-fn nearest(net: SurfaceNet<'_>, place: [f64; 3], mut uv: [f64; 2]) -> f64 {
+pub(crate) fn nearest(net: SurfaceNet<'_>, place: [f64; 3], mut uv: [f64; 2]) -> f64 {
     let dot = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| a[k] * b[k]).sum::<f64>();
     for _ in 0..8 {
         let (p, [a, b]) = (point(net, uv[0], uv[1]), partials(net, uv[0], uv[1]));

@@ -11,9 +11,10 @@ use std::sync::Mutex;
 
 const FILE: &str = "tests/budgets.txt";
 const HEAD: &str = "\
-# What the firmware costs, compared exactly by tests/firmware_gate.rs and tests/firmware_bench.rs on the toolchain of
-# rust-toolchain.toml. A change that costs more raises the number here, in the same commit, and says why. To measure:
-#     UPDATE_BUDGETS=1 REQUIRE_FIRMWARE=1 cargo test --all-features --test firmware_gate --test firmware_bench
+# What the firmware costs, compared exactly by tests/firmware_*.rs on the toolchain of rust-toolchain.toml. A change that
+# costs more raises the number here, in the same commit, and says why. To measure:
+#     UPDATE_BUDGETS=1 REQUIRE_FIRMWARE=1 cargo test --all-features --test firmware_gate --test firmware_bench \\
+#         --test firmware_peers --test firmware_parts --test firmware_defmt
 ";
 
 type Section = Vec<(String, u64)>;

@@ -93,16 +93,27 @@ pub(crate) const TARGETS: [&str; 4] =
     ["thumbv6m-none-eabi", "thumbv7m-none-eabi", "thumbv7em-none-eabihf", "riscv32imc-unknown-none-elf"];
 
 /// Runs `cargo build --release` for some targets at once, in the target directory of this name; returns it. The images
-/// may take the 4 MB of flash of QEMU's mps2 machines.
+/// may take the 4 MB of flash and 16 MB of RAM of QEMU's mps2 machines.
 pub(crate) fn cargo_build_all(targets: &[&str], folder: &str, what: &[&str]) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
-    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.current_dir(ROOT).args(["build", "--release", "--locked", "--quiet"]);
-    cargo.args(targets.iter().flat_map(|target| ["--target", target]));
+    let mut all = Vec::new();
     for target in targets.iter().filter(|target| target.starts_with("thumb")) {
         let flag = "-Clink-arg=--defsym=_flash_of_mps2=1"; // see memory.x
-        cargo.arg("--config").arg(format!("target.{target}.rustflags=[\"{flag}\"]"));
+        all.extend(["--config".into(), format!("target.{target}.rustflags=[\"{flag}\"]")]);
     }
+    all.extend(what.iter().copied().map(String::from));
+    build_all(Path::new(ROOT), targets, folder, &all)
+}
+
+/// The same for the package `peers`, which brings its link arguments along.
+pub(crate) fn cargo_build_peers(targets: &[&str]) -> PathBuf {
+    build_all(&Path::new(ROOT).join("peers"), targets, "peers", &[])
+}
+
+fn build_all(package: &Path, targets: &[&str], folder: &str, what: &[String]) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.current_dir(package).args(["build", "--release", "--locked", "--quiet"]);
+    cargo.args(targets.iter().flat_map(|target| ["--target", target]));
     cargo.args(what).arg("--target-dir").arg(&folder);
     for variable in ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "CARGO_BUILD_RUSTFLAGS", "CARGO_BUILD_TARGET"] {
         cargo.env_remove(variable);

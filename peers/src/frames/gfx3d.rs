@@ -1,9 +1,9 @@
 //! `embedded-3dgfx`: record and execute, Gouraud, its own light model; the camera so far away that perspective hardly
 //! shows. Its vertices are whole pixels, and a vertex is placed once for each of its triangles.
 
+use super::super::{counter, room};
 use super::Screen;
 use super::mesh::{MOST_TRIANGLES, MOST_VERTICES, Mesh};
-use super::super::{counter, room};
 use super::triangles::Target;
 use super::view::{AREA, Shot};
 use core::fmt::{Error, Result};
@@ -43,7 +43,8 @@ impl Model {
         let mut vertices = 0;
         for ((out, normal_out), (point, normal)) in self.vertices.iter_mut().zip(&mut self.normals).zip(mesh.vertices())
         {
-            let turned = |v: &[i16; 3]| rows.map(|[a, b, c, _]| a * f32::from(v[0]) + b * f32::from(v[1]) + c * f32::from(v[2]));
+            let turned =
+                |v: &[i16; 3]| rows.map(|[a, b, c, _]| a * f32::from(v[0]) + b * f32::from(v[1]) + c * f32::from(v[2]));
             let [x, y, z] = turned(point);
             *out = [x + rows[0][3] - 160.0, 120.0 - y - rows[1][3], -z - rows[2][3]];
             let [x, y, z] = turned(normal).map(|c| c / scale / 16_384.0);

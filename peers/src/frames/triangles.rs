@@ -60,13 +60,7 @@ impl Order {
 }
 
 /// Draws a mesh from behind.
-pub(crate) fn draw(
-    mut screen: Target<'_>,
-    mesh: &Mesh,
-    corners: &[Corner],
-    order: &mut Order,
-    colours: &[u16; 256],
-) {
+pub(crate) fn draw(mut screen: Target<'_>, mesh: &Mesh, corners: &[Corner], order: &mut Order, colours: &[u16; 256]) {
     order.first.fill(NONE);
     let of = |indices: &[u16; 3]| indices.map(|index| &corners[usize::from(index)]);
     for (index, triangle) in mesh.triangles().iter().enumerate() {

@@ -1,7 +1,7 @@
 //! The view and the light of `fw_cost`'s frame, in the form that a mesh renderer wants.
 
-use super::mesh::Mesh;
 use super::super::teapot;
+use super::mesh::Mesh;
 use embedded_graphics_core::pixelcolor::{IntoStorage, Rgb565, WebColors};
 use embedded_surfaces::geometry::View;
 use embedded_surfaces::graphics::Shade;
