@@ -4,6 +4,9 @@
 #![cfg(feature = "defmt")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[path = "common/budgets.rs"]
+#[allow(dead_code)]
+mod budgets;
 #[path = "common/firmware.rs"]
 mod firmware;
 
@@ -27,7 +30,9 @@ fn check(target: &str) {
     let what = ["--features", "defmt", "--example", "fw_defmt", "--", "-C", "link-arg=-Tdefmt.x"];
     let folder = firmware::cargo("rustc", target, &what, &[firmware::FOR_SIZE]);
     let image = folder.join("examples/fw_defmt");
-    let log = decode(&std::fs::read(&image).unwrap(), &firmware::run_bytes(&runner, &image));
+    let elf = std::fs::read(&image).unwrap();
+    weigh(target, &elf);
+    let log = decode(&elf, &firmware::run_bytes(&runner, &image));
     let path = Path::new(firmware::ROOT).join("examples/fw_defmt.out");
     if std::env::var_os("UPDATE_DEFMT").is_some() {
         std::fs::write(&path, &log).unwrap();
@@ -37,6 +42,17 @@ fn check(target: &str) {
         assert_eq!(line, expected, "line {} of {target}", k + 1);
     }
     assert_eq!(log.lines().count(), expected.lines().count(), "lines of {target}:\n{log}");
+}
+
+/// Logging every type brings in no soft float and no allocator, no panic but the logger's own, and the bytes that are
+/// budgeted.
+fn weigh(target: &str, elf: &[u8]) {
+    let offences: Vec<_> =
+        firmware::symbols(elf).into_iter().filter_map(|name| Some((firmware::offence(&name)?, name))).collect();
+    assert!(offences.is_empty(), "{target}: {offences:#?}");
+    let (flash, ram) = firmware::sizes(elf);
+    let measured = [("bytes of flash", flash), ("bytes of static memory", ram)];
+    budgets::check(&format!("fw_defmt, {target}"), &measured.map(|(name, bytes)| (name.to_owned(), bytes)));
 }
 
 /// A line for each frame: its level and its message.
