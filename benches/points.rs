@@ -5,7 +5,6 @@
 //! with the exact ones and the differing points are counted. `cargo bench` ends with a table of the best of many
 //! interleaved runs, as ratios to the exact engine.
 #![allow(missing_docs, clippy::unwrap_used, clippy::disallowed_types, clippy::float_arithmetic)]
-#![allow(clippy::needless_range_loop, reason = "lanes are clearest by index")]
 
 mod peers;
 

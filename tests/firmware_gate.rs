@@ -17,7 +17,7 @@ mod image;
 #[path = "common/public.rs"]
 mod public;
 
-use firmware::{ROOT, TARGETS, cargo_build_all, installed, installed_runner, offence, run, symbols};
+use firmware::{ROOT, TARGETS, cargo_build_all, installed, installed_runner, is_thorough, offences, run};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -44,10 +44,6 @@ fn for_size_with_fewer_features() {
     }
 }
 
-fn is_thorough() -> bool {
-    ["FIRMWARE_GATE", "UPDATE_BUDGETS"].iter().any(|name| std::env::var_os(name).is_some_and(|value| value == "1"))
-}
-
 /// Builds, reads, weighs and runs the gate on every target.
 fn check(opt_level: &str, features: &str) {
     let targets = installed(&TARGETS);
@@ -64,9 +60,7 @@ fn check(opt_level: &str, features: &str) {
         let path = folder.join(target).join("release/examples/fw_gate");
         let elf = std::fs::read(&path).unwrap();
         let title = format!("fw_gate, {target}, opt-level {opt_level}, features \"{features}\"");
-        let names = symbols(&elf);
-        assert!(names.iter().any(|name| name.contains("embedded_surfaces")), "{title}: the image is stripped");
-        let offences: Vec<_> = names.iter().filter_map(|name| Some((offence(name)?, name))).collect();
+        let offences = offences(&elf);
         assert!(offences.is_empty(), "{title}: {offences:#?}");
         compare_with_host(target, &path, &title);
         budgets::check(&title, &image::weigh(&elf, features == "styled"));

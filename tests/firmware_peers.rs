@@ -1,10 +1,9 @@
 //! `peers/`: what firmware does today, counted like `fw_bench` and `fw_cost`; its pictures are the host's on every core,
-//! and show what the crate's frame shows.
+//! and show what the crate's frame shows. RV32 only with `FIRMWARE_GATE=1` or `UPDATE_BUDGETS=1`.
 //!
 //! `FIRMWARE_PICTURES=folder cargo test --test firmware_peers` writes them there as PPM files.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 #![allow(clippy::disallowed_types, clippy::float_arithmetic)]
-#![allow(clippy::duplicate_mod, reason = "each firmware brings its data along")]
 
 #[path = "common/audit.rs"]
 mod audit;
@@ -13,23 +12,22 @@ mod audit;
 mod budgets;
 #[path = "common/firmware.rs"]
 mod firmware;
-#[path = "../examples/fw_cost.rs"]
-#[allow(dead_code, reason = "its `main` is for `cargo run`")]
-mod fw_cost;
 #[path = "../peers/src/main.rs"]
 #[allow(dead_code, reason = "its `main` is for `cargo run`")]
 mod peers;
 #[path = "common/rows.rs"]
 mod rows;
 
-use embedded_graphics::pixelcolor::{IntoStorage, Rgb565, raw::RawU16};
+use embedded_graphics::pixelcolor::{IntoStorage, Rgb565, WebColors, raw::RawU16};
 use embedded_graphics::prelude::RgbColor;
 use embedded_surfaces::geometry::View;
+use embedded_surfaces::graphics::Material;
 use embedded_surfaces::num::I16F16;
-use embedded_surfaces::patch::{Surface, SurfaceNet};
+use embedded_surfaces::patch::{BicubicPatch, Surface, SurfaceNet};
 use embedded_surfaces::reference::point;
-use fw_cost::{frame, teapot};
-use peers::frames::{Studio, mesh::GRIDS};
+use embedded_surfaces::render::{Cull, Light, Scene, Style, Tile};
+use peers::frames::{Studio, mesh::GRIDS, view::AREA};
+use peers::teapot;
 use rows::{counted, parse, print_table, run_all};
 
 #[test]
@@ -37,8 +35,13 @@ fn boards_draw_what_the_host_draws() {
     let mut host = String::new();
     peers::report(&mut host).unwrap();
     let host = parse(&host);
-    let folder = firmware::cargo_build_peers(&counted());
-    let columns = run_all("fw_peers", |target| folder.join(target).join("release/fw_peers"));
+    let mut targets = counted();
+    if !firmware::is_thorough() {
+        // Points alone run there.
+        targets.retain(|target| target.starts_with("thumb"));
+    }
+    let folder = firmware::cargo_build_peers(&targets);
+    let columns = run_all("fw_peers", &targets, |target| folder.join(target).join("release/fw_peers"));
     for (short, rows) in &columns {
         for row in rows {
             match host.iter().find(|other| other.name == row.name) {
@@ -55,11 +58,21 @@ fn boards_draw_what_the_host_draws() {
     print_table(&columns);
 }
 
-/// The frame of exact points.
+/// The patches in the view of `fw_cost`.
+fn patches() -> [BicubicPatch; 32] {
+    let fit = I16F16::from_bits(60_293); // 0.92
+    let map = View::default().fit(teapot::vertices(), AREA.width, AREA.height, fit).unwrap();
+    teapot::patches(&map).unwrap()
+}
+
+/// The frame that `fw_cost` counts, by exact points.
 fn crates_frame() -> Vec<u16> {
-    let (mut pixels, mut buffers) = (Vec::new(), Box::new(frame::Buffers::new()));
-    frame::draw(false, &mut buffers, |row| pixels.extend(row.iter().map(|c| c.into_storage()))).unwrap();
-    pixels
+    let (patches, table) = (patches(), audit::joined(&teapot::MODEL));
+    let scene = Scene::new(&patches, Light::default(), Style::Shaded).unwrap().with_topology(&table).unwrap();
+    let (mut colour, mut depth) = (vec![Rgb565::BLACK; AREA.pixels()], vec![0; AREA.pixels()]);
+    let mut tile = Tile::new(AREA, &mut colour, &mut depth, Rgb565::BLACK).unwrap();
+    scene.with_cull(Cull::Back).draw(&mut tile, &Material { colour: Rgb565::CSS_BURLY_WOOD });
+    tile.pixels().iter().map(|c| c.into_storage()).collect()
 }
 
 /// The level of green, of 255.
@@ -69,7 +82,6 @@ fn level(colour: u16) -> f64 {
 
 #[test]
 fn peers_show_the_frame() {
-    assert_eq!((teapot::vertices().count(), frame::BAND), (306, 320 * 16));
     let expected = crates_frame();
     write("crate", &expected);
     let mut names = Vec::new();
@@ -90,11 +102,9 @@ fn peers_show_the_frame() {
 
 fn write(name: &str, colour: &[u16]) {
     let Some(folder) = std::env::var_os("FIRMWARE_PICTURES") else { return };
-    let mut bytes = frame::PPM_HEAD.to_vec();
-    for row in colour.chunks_exact(320) {
-        let row: Vec<_> = row.iter().map(|c| Rgb565::from(RawU16::new(*c))).collect();
-        bytes.extend_from_slice(&frame::ppm_row(&row));
-    }
+    let mut bytes = b"P6\n320 240\n255\n".to_vec();
+    let rgb = colour.iter().map(|c| Rgb565::from(RawU16::new(*c))).map(|c| [c.r() << 3, c.g() << 2, c.b() << 3]);
+    bytes.extend(rgb.flatten());
     std::fs::write(std::path::Path::new(&folder).join(format!("{name}.ppm")), bytes).unwrap();
 }
 
@@ -122,9 +132,7 @@ fn deviation(net: SurfaceNet<'_>, r: usize, s: usize) -> f64 {
 
 #[test]
 fn the_mesh_is_half_a_pixel_from_the_surface() {
-    let fit = I16F16::from_bits(60_293);
-    let map = View::default().fit(teapot::vertices(), 320, 240, fit).unwrap();
-    let patches = teapot::patches(&map).unwrap();
+    let patches = patches();
     let mut worst = 0.0_f64;
     for [first, count, r, s] in GRIDS {
         // The others of a ring are this one turned, or mirrored.

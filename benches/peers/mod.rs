@@ -3,6 +3,7 @@
 //! All of them are given favours that the exact engine does not take: the coordinates of this patch are positive, so
 //! `floor(x + 1/2)` is a truncation, folded into the start values; n = 256 makes u, v and w exact in `f32` and
 //! `I16F16`; the differences are set up in `f64`.
+#![allow(clippy::needless_range_loop, reason = "lanes are clearest by index")]
 
 #[path = "../../examples/data/nets.rs"]
 mod nets;

@@ -60,8 +60,10 @@ macro_rules! ways {
     };
 }
 
+type Way = (&'static str, fn(&Cubic, &mut Sum));
+
 /// Each as `benches/peers` writes it, a point at a time.
-const WAYS: [(&str, fn(&Cubic, &mut Sum)); 4] = ways! {
+const WAYS: [Way; 4] = ways! {
     "f32 forward differences": points::forward_f32::<3, _>,
     "I16F16 Horner": points::horner_fixed,
     "I16F16 de Casteljau": points::de_casteljau_fixed,

@@ -24,6 +24,11 @@ pub(crate) fn skip(target: &str, missing: &str) {
     std::io::stderr().write_all(message.as_bytes()).unwrap();
 }
 
+/// Whether images that take minutes to build, or that hardly ever change, are built, too.
+pub(crate) fn is_thorough() -> bool {
+    ["FIRMWARE_GATE", "UPDATE_BUDGETS"].iter().any(|name| std::env::var_os(name).is_some_and(|value| value == "1"))
+}
+
 /// Those of some targets that can be built for; says which cannot.
 pub(crate) fn installed<'t>(targets: &[&'t str]) -> Vec<&'t str> {
     let (installed, missing): (Vec<_>, Vec<_>) = targets.iter().copied().partition(|t| target_is_installed(t));
@@ -198,6 +203,13 @@ pub(crate) fn sizes(elf: &[u8]) -> (u64, u64) {
         }
     }
     (flash, ram)
+}
+
+/// The symbols that may not be in a firmware, with the reason. Fails for an image without symbols.
+pub(crate) fn offences(elf: &[u8]) -> Vec<(&'static str, String)> {
+    let names = symbols(elf);
+    assert!(names.iter().any(|name| name.contains("embedded_surfaces")), "the image is stripped");
+    names.into_iter().filter_map(|name| Some((offence(&name)?, name))).collect()
 }
 
 /// Why a symbol may not be in a firmware; `None` for one that may. The panic handler alone is no offence: it is
