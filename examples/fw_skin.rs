@@ -6,7 +6,7 @@
 //! ```
 //!
 //! It prints a checksum of all control points, the quality, and on a board the RAM that it took: shifts and stack, painted
-//! before and looked at after. `tests/g1_firmware.rs` compares the rest with a host.
+//! before and looked at after. `tests/firmware_skin.rs` compares the rest with a host.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[path = "data/ring.rs"]

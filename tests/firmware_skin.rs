@@ -17,15 +17,9 @@ fn a_mesh_of_200_vertices_streams_within_64_kilobytes() {
     example::report(&mut host).unwrap();
     assert_eq!(host.lines().count(), 2, "{host}");
     let target = "thumbv7m-none-eabi";
-    if !firmware::target_is_installed(target) {
-        return firmware::skip(target, &format!("the Rust target (rustup target add {target})"));
-    }
-    let runner = firmware::runner_of(target);
-    if !firmware::program_is_installed(&runner[0]) {
-        return firmware::skip(target, &runner[0]);
-    }
-    let level = [("CARGO_PROFILE_RELEASE_OPT_LEVEL", "s")];
-    let image = firmware::cargo("build", target, &["--example", "fw_skin"], &level).join("examples/fw_skin");
+    let Some(runner) = firmware::board(target) else { return };
+    let image =
+        firmware::cargo("build", target, &["--example", "fw_skin"], &[firmware::FOR_SIZE]).join("examples/fw_skin");
     let elf = std::fs::read(&image).unwrap();
     let offences: Vec<_> =
         firmware::symbols(&elf).into_iter().filter(|name| firmware::offence(name).is_some()).collect();
