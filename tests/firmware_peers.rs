@@ -97,7 +97,7 @@ fn peers_show_the_frame() {
         Ok(())
     });
     drawn.unwrap();
-    assert_eq!(names.len(), 3);
+    assert_eq!(names.len(), 4);
 }
 
 fn write(name: &str, colour: &[u16]) {

@@ -2,7 +2,10 @@
 //! 1/16 of a pixel. A pixel belongs to a triangle if its centre does, borders on the left and above included.
 
 use super::Screen;
+use super::mesh::Mesh;
+use super::triangles::{NONE, Order};
 use super::view::{AREA, Corner};
+use core::ops::Range;
 
 const WIDTH: usize = AREA.width as usize;
 
@@ -58,8 +61,13 @@ impl Plane {
     }
 }
 
-/// Fills a triangle that faces the viewer.
-pub(crate) fn triangle(screen: &mut Screen, corners: [&Corner; 3], colours: &[u16; 256]) {
+/// Fills a triangle that faces the viewer; of a band only the rows in it.
+pub(crate) fn triangle<const BANDED: bool>(
+    screen: &mut Screen,
+    band: &Range<i32>,
+    corners: [&Corner; 3],
+    colours: &[u16; 256],
+) {
     let [a, b, c] = corners;
     let (ux, uy, vx, vy) = (b.x - a.x, b.y - a.y, c.x - a.x, c.y - a.y);
     let area = ux * vy - vx * uy;
@@ -83,7 +91,8 @@ pub(crate) fn triangle(screen: &mut Screen, corners: [&Corner; 3], colours: &[u1
         (false, false, _) => (c, b, a),
     };
     let mid_is_right = (mid.x - top.x) * (low.y - top.y) > (low.x - top.x) * (mid.y - top.y);
-    let rows = [top.y, mid.y, low.y].map(|y| (y + 15) >> 4);
+    let row = |corner: &Corner| (corner.y + 15) >> 4;
+    let rows = [top, mid, low].map(|corner| if BANDED { row(corner).clamp(band.start, band.end) } else { row(corner) });
     if rows[0] == rows[2] {
         return;
     }
@@ -129,5 +138,45 @@ fn span(
         }
         depth = depth.wrapping_add(z.right as u32);
         shade = shade.wrapping_add(level.right as u32);
+    }
+}
+
+/// Rows of a band.
+pub(crate) const ROWS: i32 = 16;
+pub(crate) const BANDS: usize = (AREA.height as usize).div_ceil(ROWS as usize);
+
+/// Lists the triangles that face the viewer by the first band that they meet.
+pub(crate) fn sort(mesh: &Mesh, corners: &[Corner], order: &mut Order) {
+    order.first.fill(NONE);
+    for (index, triangle) in mesh.triangles().iter().enumerate() {
+        let [a, b, c] = triangle.map(|index| &corners[usize::from(index)]);
+        if (b.x - a.x) * (c.y - a.y) > (c.x - a.x) * (b.y - a.y) {
+            let row = (a.y.min(b.y).min(c.y) + 15) >> 4;
+            order.push((row / ROWS) as usize, index as u16);
+        }
+    }
+}
+
+/// Draws a band, and hands those that reach below it on to the next.
+pub(crate) fn draw_band(
+    screen: &mut Screen,
+    band: usize,
+    (mesh, corners): (&Mesh, &[Corner]),
+    order: &mut Order,
+    colours: &[u16; 256],
+) {
+    let rows = band as i32 * ROWS..(band as i32 + 1) * ROWS;
+    let pixels = rows.start as usize * WIDTH..rows.end as usize * WIDTH;
+    screen.colour[pixels.clone()].fill(0);
+    screen.depth[pixels].fill(u16::MAX);
+    let mut index = order.first[band];
+    while index != NONE {
+        let next = order.next[usize::from(index)];
+        let corners = mesh.triangles()[usize::from(index)].map(|index| &corners[usize::from(index)]);
+        triangle::<true>(screen, &rows, corners, colours);
+        if corners.iter().any(|corner| corner.y > (rows.end - 1) << 4) {
+            order.push(band + 1, index);
+        }
+        index = next;
     }
 }

@@ -65,10 +65,19 @@ impl Studio {
             screen.clear();
             view::place(mesh, &shot, corners);
             for indices in mesh.triangles() {
-                fixed::triangle(screen, indices.map(|index| &corners[usize::from(index)]), &shot.colours);
+                let corners = indices.map(|index| &corners[usize::from(index)]);
+                fixed::triangle::<false>(screen, &(0..0), corners, &shot.colours);
             }
         });
         done("scanlines in fixed point", counted, &screen.colour)?;
+        let mut counted = counter::count(|| {
+            view::place(mesh, &shot, corners);
+            fixed::sort(mesh, corners, order);
+        });
+        for band in 0..fixed::BANDS {
+            counted += counter::count(|| fixed::draw_band(screen, band, (mesh, corners), order, &shot.colours));
+        }
+        done("scanlines in fixed point, bands of 16 rows", counted, &screen.colour)?;
         let counted = counter::count(|| {
             screen.clear();
             float::place(mesh, &float_shot, floats);

@@ -47,16 +47,22 @@ impl DrawTarget for Target<'_> {
 }
 
 const BUCKETS: usize = 512;
-const NONE: u16 = u16::MAX;
+/// No triangle.
+pub(crate) const NONE: u16 = u16::MAX;
 
-/// Lists of triangles by depth.
+/// Lists of triangles, by depth or by band.
 pub(crate) struct Order {
-    first: [u16; BUCKETS],
-    next: [u16; MOST_TRIANGLES],
+    pub(crate) first: [u16; BUCKETS],
+    pub(crate) next: [u16; MOST_TRIANGLES],
 }
 
 impl Order {
     pub(crate) const EMPTY: Self = Self { first: [0; BUCKETS], next: [0; MOST_TRIANGLES] };
+
+    pub(crate) fn push(&mut self, bucket: usize, index: u16) {
+        self.next[usize::from(index)] = self.first[bucket];
+        self.first[bucket] = index;
+    }
 }
 
 /// Draws a mesh from behind.
@@ -70,8 +76,7 @@ pub(crate) fn draw(mut screen: Target<'_>, mesh: &Mesh, corners: &[Corner], orde
         }
         // The depths are 2^14 around 2^15; three of them, in steps of 3/2 pixels.
         let bucket = ((a.z + b.z + c.z) as usize / 192).min(BUCKETS - 1);
-        order.next[index] = order.first[bucket];
-        order.first[bucket] = index as u16;
+        order.push(bucket, index as u16);
     }
     for first in order.first.iter().rev() {
         let mut index = *first;
