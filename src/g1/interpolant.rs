@@ -14,12 +14,12 @@ use crate::patch::{QuinticTriangle, Triangle};
 ///
 /// ```
 /// use embedded_surfaces::g1::{Controls, Interpolant, Options, Shift};
-/// use embedded_surfaces::{geometry::Point3, mesh::{Faces, Links, Mesh}};
+/// use embedded_surfaces::{geometry::Point3, mesh::{Faces, Links, Mesh}, num::I16F16};
 /// let points = [[80, 0, 0], [0, 80, 0], [0, 0, 80], [-80, 0, 0], [0, -80, 0], [0, 0, -80]];
 /// let points = points.map(|[x, y, z]| Point3::from_ints(x, y, z));
 /// let faces = [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
 /// let links = Links::<6, 24>::new(6, Faces::Triangles(&faces))?;
-/// let mesh = Mesh::new(&points, &links)?;
+/// let mesh = Mesh::<I16F16>::new(&points, &links)?;
 ///
 /// let mut shifts = [Shift::NONE; 6];
 /// let ball = Interpolant::new(&mesh, &Controls::default(), &Options::default(), &mut shifts)?;

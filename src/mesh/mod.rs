@@ -50,10 +50,10 @@ pub struct HalfEdge(u16);
 /// A mesh that was checked: points, faces and how they meet, all borrowed.
 ///
 /// ```
-/// use embedded_surfaces::{geometry::Point3, mesh::{Faces, Links, Mesh, MeshError}};
+/// use embedded_surfaces::{geometry::Point3, mesh::{Faces, Links, Mesh, MeshError}, num::I16F16};
 /// let points = [[0, 0], [9, 0], [9, 9], [0, 9]].map(|[x, y]| Point3::from_ints(x, y, 0));
 /// let links = Links::<4, 6>::new(4, Faces::Triangles(&[[0, 1, 2], [0, 2, 3]]))?;
-/// let mesh = Mesh::new(&points, &links)?;
+/// let mesh = Mesh::<I16F16>::new(&points, &links)?;
 /// assert!(mesh.is_border(0));
 /// let neighbours: Vec<_> = mesh.spokes(0).map(|spoke| spoke.to).collect();
 /// assert_eq!(neighbours, [1, 2, 3]);

@@ -24,10 +24,10 @@ impl<C: Coord> Mesh<'_, C> {
     /// Cost: for each face two square roots, four divisions of 128 bits and an arctangent.
     ///
     /// ```
-    /// # use embedded_surfaces::{geometry::{Point3, Vector3}, mesh::{Faces, Links, Mesh, MeshError}, num::I32F32};
+    /// # use embedded_surfaces::{geometry::{Point3, Vector3}, mesh::{Faces, Links, Mesh, MeshError}, num::{I16F16, I32F32}};
     /// let points = [[0, 0], [9, 0], [9, 9], [0, 9]].map(|[x, y]| Point3::from_ints(x, y, 0));
     /// let links = Links::<4, 4>::new(4, Faces::Quads(&[[0, 1, 2, 3]]))?;
-    /// let normal = Mesh::new(&points, &links)?.normal(0);
+    /// let normal = Mesh::<I16F16>::new(&points, &links)?.normal(0);
     /// assert_eq!(normal, Some(Vector3::new(I32F32::ZERO, I32F32::ZERO, I32F32::ONE)));
     /// # Ok::<(), MeshError>(())
     /// ```
