@@ -11,8 +11,11 @@ use embedded_surfaces::g1::{Controls, G1Error, Interpolant, Lengths, List, Optio
 use embedded_surfaces::geometry::{Point3, Vector3};
 use embedded_surfaces::mesh::{Faces, Links, Mesh};
 use embedded_surfaces::num::{I16F16, I32F32};
+use embedded_surfaces::patch::QuinticTriangle;
+use embedded_surfaces::subdivide::{PatchTopology, Tolerance, tessellate, topology};
 use families::{Dice, bipyramid, cube, octahedron, open, sphere, torus};
 use skin::{Net, Refusal, Seam, Skin, length, minus, plus, point, times};
+use std::collections::HashMap;
 
 fn ball() -> Skin {
     sphere(&mut Dice(5), 20).scaled().0
@@ -194,6 +197,28 @@ fn whole_coordinates_and_rounded_triangles() {
     }
     let quality = surface.quality().unwrap();
     assert!(quality.max_angle_rounded() <= I32F32::from_bits(4), "{quality:?}");
+}
+
+#[test]
+fn skins_are_tessellated_without_a_crack() {
+    let skin = torus(7, 5).scaled().0;
+    let nets = skin.smooth().unwrap().nets;
+    let fixed = |p: &skin::V3| Point3::from_array(p.map(|c| I16F16::from_bits((c * 65_536.0 + 0.5).floor() as i32)));
+    let patches: Vec<_> =
+        nets.iter().map(|net| QuinticTriangle::new(core::array::from_fn(|i| fixed(&net[i]))).unwrap()).collect();
+    let mut table = vec![PatchTopology::default(); patches.len()];
+    topology(&patches, &mut table).unwrap();
+    assert!(table.iter().all(|patch| (0..3).all(|edge| patch.is_joined(edge))));
+    let tolerance = Tolerance::new(I16F16::from_num(0.5)).unwrap();
+    let mut edges = HashMap::new();
+    for triangle in tessellate(&patches, &table, tolerance).unwrap() {
+        let [a, b, c] = triangle.map(|vertex| vertex.point);
+        for (p, q) in [(a, b), (b, c), (c, a)] {
+            *edges.entry((p, q)).or_insert(0) += 1;
+        }
+    }
+    assert!(edges.len() > 3 * 1000);
+    assert!(edges.iter().all(|((p, q), count)| *count == 1 && edges.contains_key(&(*q, *p))));
 }
 
 #[test]

@@ -57,17 +57,17 @@ pub(crate) fn read(path: &Path) -> Result<Polyhedron, FileError> {
 
 type Soup = (Vec<[f32; 3]>, Vec<[usize; 3]>);
 
-fn unreadable(path: &Path, error: &dyn std::fmt::Display) -> FileError {
-    FileError::Unreadable(format!("{}: {error}", path.display()))
+fn unreadable(error: impl std::fmt::Display) -> FileError {
+    FileError::Unreadable(error.to_string())
 }
 
 fn obj(path: &Path) -> Result<Soup, FileError> {
     let options =
         tobj::LoadOptions { triangulate: false, ignore_points: true, ignore_lines: true, ..Default::default() };
-    let file = File::open(path).map_err(|error| unreadable(path, &error))?;
+    let file = File::open(path).map_err(unreadable)?;
     // Materials do not matter.
     let read = tobj::load_obj_buf(&mut BufReader::new(file), &options, |_| Ok(Default::default()));
-    let (models, _) = read.map_err(|error| unreadable(path, &error))?;
+    let (models, _) = read.map_err(unreadable)?;
     let (mut points, mut faces) = (Vec::new(), Vec::new());
     for tobj::Model { mesh, .. } in models {
         if mesh.face_arities.iter().any(|corners| *corners != 3) {
@@ -81,8 +81,8 @@ fn obj(path: &Path) -> Result<Soup, FileError> {
 }
 
 fn stl(path: &Path) -> Result<Soup, FileError> {
-    let file = File::open(path).map_err(|error| unreadable(path, &error))?;
-    let mesh = stl_io::read_stl(&mut BufReader::new(file)).map_err(|error| unreadable(path, &error))?;
+    let file = File::open(path).map_err(unreadable)?;
+    let mesh = stl_io::read_stl(&mut BufReader::new(file)).map_err(unreadable)?;
     Ok((mesh.vertices.iter().map(|v| v.0).collect(), mesh.faces.iter().map(|face| face.vertices).collect()))
 }
 

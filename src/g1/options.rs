@@ -34,6 +34,12 @@ pub enum Lengths {
 }
 
 /// How a mesh is interpolated.
+///
+/// ```
+/// use embedded_surfaces::g1::{Options, Scheme};
+/// let baseline = Options { scheme: Scheme::PointNormal, ..Options::default() };
+/// assert!(!baseline.strict && baseline.tolerance == Options::LEAST_TOLERANCE);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Options {
     /// How triangles are made.
@@ -85,6 +91,25 @@ pub struct Twist {
 }
 
 /// What else shapes the surface: all optional. Lists are searched from the front for each use.
+///
+/// ```
+/// use embedded_surfaces::g1::{Controls, Interpolant, Options, Shift, Tangent};
+/// use embedded_surfaces::geometry::{Point3, Vector3};
+/// use embedded_surfaces::mesh::{Faces, Links, Mesh};
+/// use embedded_surfaces::num::{I16F16, I32F32};
+/// let points = [[0, 0, 0], [90, 0, 9], [90, 90, 0], [0, 90, 9]].map(|[x, y, z]| Point3::from_ints(x, y, z));
+/// let links = Links::<4, 6>::new(4, Faces::Triangles(&[[0, 1, 2], [0, 2, 3]]))?;
+/// let mesh = Mesh::<I16F16>::new(&points, &links)?;
+/// let up = [Vector3::new(I32F32::ZERO, I32F32::ZERO, I32F32::ONE); 4];
+/// let along = Vector3::new(I32F32::from_num(30), I32F32::ZERO, I32F32::ZERO);
+/// let tangents = [Tangent { from: 0, to: 1, vector: along }];
+/// let controls = Controls { normals: Some(&up), tangents: &tangents, ..Controls::default() };
+/// let mut shifts = [Shift::NONE; 4];
+/// let sail = Interpolant::new(&mesh, &controls, &Options::default(), &mut shifts)?;
+/// let second = *sail.triangle(0)?.point(4, 1, 0).ok_or("it has 21 points")?;
+/// assert_eq!(second, Point3::from_ints(30, 0, 0).into());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Controls<'a> {
     /// A normal of any length for each vertex; without them they are estimated ([`Mesh::normal`]).
