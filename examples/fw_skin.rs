@@ -5,10 +5,13 @@
 //! CARGO_PROFILE_RELEASE_OPT_LEVEL=s cargo run --release --target thumbv7m-none-eabi --example fw_skin
 //! ```
 //!
-//! It prints a checksum of all control points, the quality, and on a board the RAM that it took: shifts and stack, painted
-//! before and looked at after. `tests/firmware_skin.rs` compares the rest with a host.
+//! It prints a checksum of all control points and how many vertices had their tangents moved; on a board also instructions
+//! and the RAM that it took: shifts and stack, painted before and looked at after. `tests/firmware_skin.rs` compares the rest with a host.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
+#[cfg(all(target_os = "none", target_arch = "arm"))]
+#[path = "board/counter.rs"]
+mod counter;
 #[path = "data/ring.rs"]
 mod ring;
 #[path = "board/run.rs"]
@@ -17,31 +20,58 @@ mod run;
 use core::fmt::{Error, Result, Write};
 use embedded_surfaces::g1::{Controls, Interpolant, Options, Shift};
 
-/// Streams all triangles; a checksum of their control points.
+/// Runs a section; the instructions that it took, in thousands, 0 where they are not counted.
+fn thousands(section: impl FnOnce()) -> u32 {
+    #[cfg(all(target_os = "none", target_arch = "arm"))]
+    return counter::count(section) / 1000;
+    #[cfg(not(all(target_os = "none", target_arch = "arm")))]
+    {
+        section();
+        0
+    }
+}
+
+/// Streams all triangles; writes a checksum of their control points, returns thousands of instructions of the first pass
+/// and of a triangle.
 #[inline(never)]
-fn skin(out: &mut impl Write, shifts: &mut [Shift]) -> Result {
-    let surface =
-        Interpolant::new(&ring::RING, &Controls::default(), &Options::default(), shifts).map_err(|_| Error)?;
-    let mut sum = 0_u64;
-    for triangle in surface.triangles() {
-        for point in triangle.map_err(|_| Error)?.points() {
-            for c in point.to_array() {
-                sum = sum.wrapping_mul(0x0000_0100_0000_01b3).wrapping_add(c.to_bits() as u64).rotate_left(9);
+fn skin(out: &mut impl Write, shifts: &mut [Shift]) -> core::result::Result<[u32; 2], Error> {
+    let (mut surface, mut sum, mut failed) = (None, 0_u64, false);
+    let first = thousands(|| {
+        surface = Interpolant::new(&ring::RING, &Controls::default(), &Options::default(), shifts).ok();
+    });
+    let surface = surface.ok_or(Error)?;
+    let mut all = 0;
+    for triangle in 0..ring::TRIANGLES {
+        all += thousands(|| match surface.triangle(triangle) {
+            Ok(triangle) => {
+                for c in triangle.points().iter().flat_map(|point| point.to_array()) {
+                    sum = sum.wrapping_mul(0x0000_0100_0000_01b3).wrapping_add(c.to_bits() as u64).rotate_left(9);
+                }
             }
-        }
+            Err(_) => failed = true,
+        });
+    }
+    if failed {
+        return Err(Error);
     }
     writeln!(out, "{} triangles, checksum {sum:016x}", ring::TRIANGLES)?;
     let shifted = surface.shifts().iter().filter(|shift| !shift.is_none()).count();
-    writeln!(out, "{shifted} vertices with moved tangents")
+    writeln!(out, "{shifted} vertices with moved tangents")?;
+    Ok([first, all / ring::TRIANGLES as u32])
 }
 
 pub(crate) fn report(out: &mut impl Write) -> Result {
     #[cfg(all(target_os = "none", target_arch = "arm"))]
     let top = stack::paint();
     let mut shifts = [Shift::NONE; ring::VERTICES];
-    skin(out, &mut shifts)?;
+    let thousands = skin(out, &mut shifts)?;
     #[cfg(all(target_os = "none", target_arch = "arm"))]
-    writeln!(out, "RAM {}", stack::used(top))?;
+    {
+        let used = stack::used(top);
+        writeln!(out, "{} thousand instructions for the first pass, {} a triangle", thousands[0], thousands[1])?;
+        writeln!(out, "RAM {used}")?;
+    }
+    let _ = thousands;
     Ok(())
 }
 
