@@ -203,14 +203,12 @@ impl<C: Coord> Setting<'_, C> {
 
     /// Spreads directions that leave a sector closed, too narrow or too wide.
     fn spread(&self, fan: &mut Fan, unknown: bool, edge: impl Fn(usize) -> Triple) -> Result<(), G1Error> {
-        let (mut directions, mut corners) = (Ring::all(0), Ring::all(0));
+        let mut directions = Ring::all(0);
         let (len, closed) = (fan.star.len, fan.star.closed);
         for i in 0..len {
             directions[i] = arctangent(fan.t[i][1], fan.t[i][0]);
         }
-        for i in 0..fan.star.sectors() {
-            corners[i] = angle_between(&edge(i), &edge(fan.star.after(i)));
-        }
+        let corners = |i: usize| angle_between(&edge(i), &edge(fan.star.after(i)));
         let fan_of = Directions { directions: &directions, corners: &corners, len, closed, unknown };
         let Some(new) = fan_of.spread() else { return Ok(()) };
         for i in 0..len {

@@ -21,8 +21,8 @@ const CLOSED: u64 = turns(1, 6_283_185_307);
 /// The directions of the edges of a fan, and the angles between the edges themselves, by which a folded fan opens.
 pub(super) struct Directions<'a> {
     pub(super) directions: &'a Ring<u64>,
-    /// The angles of the corners of the faces.
-    pub(super) corners: &'a Ring<u64>,
+    /// The angles of the corners of the faces; asked for where the directions cannot be used.
+    pub(super) corners: &'a dyn Fn(usize) -> u64,
     pub(super) len: usize,
     pub(super) closed: bool,
     /// Whether some direction is not known.
@@ -53,7 +53,9 @@ impl Directions<'_> {
         let folded = if self.closed { sum != FULL } else { sum >= FULL };
         let mut changed = self.unknown || folded || (0..n).any(|i| angles[i] < CLOSED);
         if changed {
-            angles = *self.corners;
+            for i in 0..n {
+                angles[i] = (self.corners)(i);
+            }
             let sum = self.sum(&angles).max(1);
             // A full turn, or at most 0.8 of one at a border.
             let most = if self.closed { FULL } else { FULL / 5 * 4 };
@@ -135,7 +137,8 @@ mod tests {
         degrees.iter().enumerate().for_each(|(i, d)| directions[i] = turns(*d, 360));
         corners.iter().enumerate().for_each(|(i, d)| angles[i] = turns(*d, 360));
         let len = degrees.len();
-        let new = Directions { directions: &directions, corners: &angles, len, closed, unknown: false }.spread()?;
+        let new =
+            Directions { directions: &directions, corners: &|i| angles[i], len, closed, unknown: false }.spread()?;
         let sectors = if closed { len } else { len - 1 };
         let angle = |i: usize| new[(i + 1) % len].wrapping_sub(new[i]) as f64 / 18_446_744_073_709_551_616.0 * 360.0;
         Some((0..sectors).map(angle).collect())

@@ -3,7 +3,7 @@
 //! Components stay below 2^61 in magnitude, so that differences of two and their products cannot overflow. Sums
 //! saturate, and what saturated does not fit 64 bits when it is narrowed: the caller hears of it.
 
-use super::{div_half_up, shift_half_up};
+use super::shift_half_up;
 
 /// A vector; what a unit of its components is worth is the caller's matter.
 pub(crate) type Triple = [i64; 3];
@@ -44,6 +44,17 @@ impl Sum3 {
         let [x, y, z] = self.0.map(|c| div_half_up(saturated(c), divisor.into()));
         narrow([x?, y?, z?])
     }
+}
+
+/// `floor(value / divisor + 1/2)` by one division, exact for |value| < 2^126; `None` for a divisor that is not positive.
+#[inline(never)]
+fn div_half_up(value: i128, divisor: i128) -> Option<i128> {
+    if divisor <= 0 {
+        return None;
+    }
+    let quotient = value.checked_div(divisor)?;
+    let twice = 2 * (value - quotient * divisor);
+    Some(quotient + i128::from(twice >= divisor) - i128::from(twice < -divisor))
 }
 
 /// Within what may be shifted and divided with rounding.
@@ -145,6 +156,11 @@ mod tests {
         let huge = (0..9).fold(Sum3::default(), |sum, _| sum.plus(&[i64::MAX; 3], i64::MAX));
         assert_eq!(huge.narrow(48), None);
         assert_eq!(huge.divide(0), None);
+        for value in -40_i128..40 {
+            for divisor in 1..9 {
+                assert_eq!(div_half_up(value, divisor), crate::num::div_half_up(value, divisor), "{value} / {divisor}");
+            }
+        }
     }
 
     #[test]
