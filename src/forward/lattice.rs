@@ -109,8 +109,8 @@ impl<'a> Lattice<'a> {
 
     /// Calls `f` with every point in row order: the fast path.
     #[inline]
-    pub fn for_each(&self, mut f: impl FnMut(LatticePoint)) {
-        walk(&self.form, &self.budget, (), |(), p| f(p));
+    pub fn for_each(&self, f: impl FnMut(LatticePoint)) {
+        walk(&self.form, &self.budget, f);
     }
 
     /// The points as an iterator, in row order.

@@ -33,6 +33,7 @@ mod budget;
 mod curve;
 mod engine;
 mod estimate;
+mod fill;
 mod form;
 mod kernel;
 mod lanes;
@@ -41,6 +42,7 @@ mod piece;
 #[cfg(feature = "graphics")]
 mod plane;
 mod quotient;
+mod run;
 mod steps;
 mod table;
 mod tangent;

@@ -4,6 +4,7 @@ use super::Budget;
 use super::form::{Form, Kind};
 use super::kernel::Kernel;
 use super::lanes::{CHUNK, Chunk, LANES, Lanes};
+use super::run::{Buffer, RUN, Run, Runs};
 use super::table::{Table, difference_table, double_steps, step, step_r, step_s};
 use super::tangent::Weights;
 use super::visit::{Fraction, Site, Visit};
@@ -121,6 +122,10 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
         let drop = 16 - budget.fraction_bits;
         for (axis, table) in self.table.iter_mut().enumerate() {
             difference_table(table, form, &|a, b| form.bits(axis, a, b) >> drop);
+            let raise = self.kernel.raise();
+            if raise > 0 {
+                table.as_flattened_mut().iter_mut().for_each(|entry| *entry = *entry << raise);
+            }
         }
         self.scale = K::Word::truncate(budget.scale as i128);
         self.weights = Weights::of(form.degrees);
@@ -296,6 +301,38 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
     /// The points still to come.
     pub(crate) fn remaining(&self) -> u64 {
         remaining(self.position, self.last_in_row, self.last_row, self.shrinks)
+    }
+
+    /// The table, and N·x + e at the first point as the kernel has it, per axis.
+    pub(super) fn origin(&self, axis: usize) -> Option<(&Table<K::Word, R>, K::Word)> {
+        self.table.get(axis).zip(self.start.1.get(axis).copied())
+    }
+}
+
+impl<K: Kernel, const R: usize> Runs for Walker<K, R> {
+    #[inline(never)]
+    fn next_run(&mut self, buffer: &mut Buffer) -> Option<Run> {
+        let (i, j) = self.position;
+        if j > self.last_row {
+            return None;
+        }
+        let left = self.last_in_row - i + 1;
+        let count = left.min(RUN as u32);
+        let row = &mut self.row;
+        for (axis, ((x, e), d)) in row.x.iter_mut().zip(&mut row.e).zip(&mut row.d).enumerate() {
+            if let Some(room) = buffer.axis(axis) {
+                self.kernel.fill(x, e, d, room, count as usize);
+            }
+        }
+        if count < left {
+            self.position.0 += count;
+        } else if j < self.last_row {
+            self.next_row();
+            self.start_row::<false>();
+        } else {
+            self.position.1 += 1;
+        }
+        Some(Run { i, j, stride: 1, count: count as usize })
     }
 }
 
