@@ -114,6 +114,16 @@ fn generate(net: SurfaceNet<'_>, steps: u32, total: &mut Total) {
     *total = Total { points: lattice.point_count() as u32, sum };
 }
 
+/// The same in any order.
+#[inline(never)]
+fn unordered(net: SurfaceNet<'_>, steps: u32, total: &mut Total) {
+    let lattice = Steps::uniform(steps).and_then(|steps| Lattice::new(net, steps));
+    let Ok(lattice) = lattice else { return };
+    let mut sum = 0_i32;
+    lattice.for_each_unordered(|p| sum = sum.wrapping_add(p.x).wrapping_add(p.y).wrapping_add(p.z));
+    *total = Total { points: lattice.point_count() as u32, sum };
+}
+
 /// A row whose count is known: an instruction a point.
 #[inline(never)]
 fn nops() {
@@ -124,16 +134,23 @@ fn nops() {
     }
 }
 
+/// Writes the line of a row.
+fn row(out: &mut impl core::fmt::Write, name: &str, what: &str, section: impl FnOnce(&mut Total)) -> core::fmt::Result {
+    let mut total = Total::default();
+    let instructions = counter::count(|| section(&mut total));
+    let Total { points, sum } = black_box(total);
+    writeln!(out, "{name}, {what}: {instructions} instructions, {points} points, sum {sum}")
+}
+
 /// Writes a line per row.
 pub(crate) fn report(out: &mut impl core::fmt::Write) -> core::fmt::Result {
     writeln!(out, "nops: {} instructions, 1000 points, sum 0", counter::count(nops))?;
     for (name, net, steps) in rows() {
         let (net, steps) = black_box((net, steps));
-        let mut total = Total::default();
-        let instructions = counter::count(|| generate(net, steps, &mut total));
-        let Total { points, sum } = black_box(total);
-        writeln!(out, "{name}, generation: {instructions} instructions, {points} points, sum {sum}")?;
+        row(out, name, "generation", |total| generate(net, steps, total))?;
     }
+    let (name, net, steps) = black_box(("cubic n=256 F=0", SEED.surface(), 256));
+    row(out, name, "any order", |total| unordered(net, steps, total))?;
     Ok(())
 }
 

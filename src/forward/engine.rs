@@ -1,10 +1,12 @@
 //! Which walker serves a plan: the only place that knows the choice of kernel and room.
 
+use super::fill::MULTIPLIES;
 use super::form::Form;
 use super::kernel::{Accumulate, Kernel, Mask, Residual};
 use super::lanes::LANES;
 use super::lattice::LatticePoint;
 use super::quotient::QuotientWalker;
+use super::residue::{self, Classes, Paired};
 use super::run::{Buffer, Run, Runs, Sink, each};
 use super::visit::{Site, Visit};
 use super::walk::Walker;
@@ -118,13 +120,19 @@ macro_rules! each_engine {
 }
 
 /// Bits of the largest rounded coordinate, sign included.
-fn integer_bits(form: &Form<'_>) -> u32 {
+pub(super) fn integer_bits(form: &Form<'_>) -> u32 {
     let largest = form.points().iter().fold(0, |largest: u32, p| {
         let here = p.to_array().map(|c| c.unsigned_abs().to_bits());
         here.into_iter().fold(largest, u32::max)
     });
     33 - ((largest + (1 << 15)) >> 16).leading_zeros()
 }
+
+/// Whether three axes of 32-bit differences stay in registers: then points are not made in runs.
+const MANY_REGISTERS: bool = cfg!(target_arch = "riscv32");
+
+/// Whether rows are made of even and odd columns where they can: on cores without anything better.
+const PAIRS: bool = LANES == 1 && !MULTIPLIES && !MANY_REGISTERS;
 
 /// A fold: the state is threaded through the walk by value.
 struct Fold<B, F> {
@@ -180,11 +188,30 @@ impl Runs for Engine {
 /// Walks a checked form with the kernel that suits it; only that kernel's state is on the stack.
 #[inline]
 pub(super) fn walk(form: &Form<'_>, budget: &Budget, mut f: impl FnMut(LatticePoint)) {
+    let fold = Fold { state: (), f: |(), p| f(p) };
     if LANES > 1 {
-        let fold = Fold { state: (), f: |(), p| f(p) };
         with_walker!(form, budget, |walker, Variant| walker.run(fold).state);
+    } else if MANY_REGISTERS
+        && form.weights().is_none()
+        && budget.accumulator == Accumulator::I32
+        && form.degree() < 4
+    {
+        if let Some(kernel) = Mask::<i32>::of(budget) {
+            Walker::<_, 4>::new(kernel, form, budget).run(fold);
+        } else {
+            Walker::<_, 4>::new(Residual::<i32>::of(budget), form, budget).run(fold);
+        }
     } else {
         each_run(form, budget, &mut move |buffer, run| buffer.fold(run, (), &mut |(), p| f(p)));
+    }
+}
+
+/// Walks a checked form in any order.
+#[inline]
+pub(super) fn walk_unordered(form: &Form<'_>, budget: &Budget, f: impl FnMut(LatticePoint)) {
+    match Classes::new(form, budget, 0) {
+        Some(classes) => residue::visit(&classes, f),
+        None => walk(form, budget, f),
     }
 }
 
@@ -215,6 +242,9 @@ fn each_run(form: &Form<'_>, budget: &Budget, sink: Sink<'_>) {
         ($name:ident, $word:ty, $room:literal) => {
             rational::<$word, $room>(form, budget, sink)
         };
+    }
+    if PAIRS && let Some(mut walk) = Classes::new(form, budget, 1).and_then(Paired::new) {
+        return each(&mut walk, sink);
     }
     choose!(form, budget, run, run_quotient)
 }

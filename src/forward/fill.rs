@@ -3,7 +3,7 @@
 //! They are functions of their own, so that nothing else takes registers, and step before they write, so that a step is
 //! made in place.
 
-use super::run::RUN;
+use super::run::{PAIRED, RUN};
 use crate::num::Word;
 use num_traits::AsPrimitive;
 
@@ -14,12 +14,15 @@ pub(super) const MULTIPLIES: bool = cfg!(all(target_arch = "arm", target_has_ato
 /// Keeps a loop as it is written: unrolled further, or with its sums regrouped, it would need more registers than
 /// there are. It is no instruction, and changes nothing but what the optimiser makes of the loop.
 #[inline(always)]
-fn as_written() {
+pub(super) fn as_written() {
     core::hint::black_box(());
 }
 
 /// Where the points of a run go that one coordinate at a time is made of: the first of each three entries.
 pub(super) type Room = [i32; 3 * RUN];
+
+/// The same for every other point: the first of each six entries.
+pub(super) type Column = [i32; 3 * PAIRED];
 
 #[inline(always)]
 fn step<W: Word, const R: usize>(v: &mut [W; R]) {
@@ -83,4 +86,22 @@ fn each(out: &mut Room, fours: usize, first: i32, mut next: impl FnMut() -> i32)
             as_written();
         }
     }
+}
+
+/// Makes 1 + 2·`turns` points of value `v[0]` with differences `v[1..]`, which go past them.
+#[inline(never)]
+pub(super) fn lane(v: &mut [i32; 4], out: &mut Column, turns: usize, read: impl Fn(i32) -> i32) {
+    let Some(([entry, ..], rest)) = out.as_chunks_mut::<6>().0.split_first_mut() else { return };
+    let mut here = *v;
+    *entry = read(here[0]);
+    for [[x, ..], [y, ..]] in rest.as_chunks_mut::<2>().0.iter_mut().take(turns) {
+        step(&mut here);
+        *x = read(here[0]);
+        as_written();
+        step(&mut here);
+        *y = read(here[0]);
+        as_written();
+    }
+    step(&mut here);
+    *v = here;
 }

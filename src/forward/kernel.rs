@@ -103,6 +103,11 @@ impl<W: Word> Accumulate<W> {
             word: core::marker::PhantomData,
         })
     }
+
+    /// The bits below the coordinate.
+    pub(super) fn fraction_bits(&self) -> usize {
+        self.shift
+    }
 }
 
 impl<W: Word> Kernel for Accumulate<W> {

@@ -1,6 +1,6 @@
 //! Lattices of surfaces.
 
-use super::engine::{Engine, walk};
+use super::engine::{Engine, walk, walk_unordered};
 use super::form::Form;
 use super::{Budget, LatticeError, Steps};
 use crate::patch::SurfaceNet;
@@ -111,6 +111,29 @@ impl<'a> Lattice<'a> {
     #[inline]
     pub fn for_each(&self, f: impl FnMut(LatticePoint)) {
         walk(&self.form, &self.budget, f);
+    }
+
+    /// Calls `f` with every point once, in an order that is left open: for depth buffers, sums and other sinks that do
+    /// not ask for neighbours in turn.
+    ///
+    /// Where the step counts and the net allow it the lattice is walked in up to 16 sub-lattices in 32-bit arithmetic: a
+    /// polynomial surface of degree at most 3, N = 2^f (step counts that are powers of two) and at most 2 bits of f and
+    /// the coordinates more than 32. So it is for a cubic triangle of 256 steps with whole coordinates. All others are
+    /// walked as by [`for_each`](Self::for_each). The points are the same.
+    ///
+    /// ```
+    /// use embedded_surfaces::forward::{Lattice, Steps};
+    /// use embedded_surfaces::patch::{BilinearPatch, Surface};
+    /// let patch = BilinearPatch::from_ints([[[0, 0, 5], [0, 64, 9]], [[64, 0, 7], [64, 64, 1]]])?;
+    /// let lattice = Lattice::new(patch.surface(), Steps::uniform(64)?)?;
+    /// let mut seen = [[false; 65]; 65];
+    /// lattice.for_each_unordered(|p| seen[p.y as usize][p.x as usize] = true);
+    /// assert!(seen.iter().flatten().all(|seen| *seen));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[inline]
+    pub fn for_each_unordered(&self, f: impl FnMut(LatticePoint)) {
+        walk_unordered(&self.form, &self.budget, f);
     }
 
     /// The points as an iterator, in row order.

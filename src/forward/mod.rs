@@ -42,6 +42,7 @@ mod piece;
 #[cfg(feature = "graphics")]
 mod plane;
 mod quotient;
+mod residue;
 mod run;
 mod steps;
 mod table;

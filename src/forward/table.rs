@@ -98,6 +98,17 @@ fn double<W: Word, const R: usize>(d: &mut [W; R]) {
     *d = samples;
 }
 
+/// To differences of twice the stride: (1 + Δ)² − 1 = Δ·(2 + Δ), so the s-th gets s factors 2 + Δ.
+#[inline(always)]
+pub(super) fn double_stride<W: Word, const R: usize>(d: &mut [W; R]) {
+    for s in 1..R {
+        for a in s..R {
+            let next = if a + 1 < R { d[a + 1] } else { W::ZERO };
+            d[a] = d[a].wrapping_plus(d[a]).wrapping_plus(next);
+        }
+    }
+}
+
 /// 1, n, n², …
 fn powers<W: Word, const R: usize>(n: u32) -> [W; R] {
     let mut powers = [W::ONE; R];
@@ -109,7 +120,7 @@ fn powers<W: Word, const R: usize>(n: u32) -> [W; R] {
 
 /// Applies `change` to the columns up to `last`.
 #[inline(always)]
-fn each_column<W: Word, const R: usize>(t: &mut Table<W, R>, last: usize, change: impl Fn(usize, &mut [W; R])) {
+pub(super) fn each_column<W: Word, const R: usize>(t: &mut Table<W, R>, last: usize, change: impl Fn(usize, &mut [W; R])) {
     for a in 0..R {
         if a > last {
             return;
