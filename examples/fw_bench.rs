@@ -124,6 +124,14 @@ fn unordered(net: SurfaceNet<'_>, steps: u32, total: &mut Total) {
     *total = Total { points: lattice.point_count() as u32, sum };
 }
 
+/// The sum by itself.
+#[inline(never)]
+fn checksum(net: SurfaceNet<'_>, steps: u32, total: &mut Total) {
+    let lattice = Steps::uniform(steps).and_then(|steps| Lattice::new(net, steps));
+    let Ok(lattice) = lattice else { return };
+    *total = Total { points: lattice.point_count() as u32, sum: lattice.checksum() };
+}
+
 /// A row whose count is known: an instruction a point.
 #[inline(never)]
 fn nops() {
@@ -151,6 +159,10 @@ pub(crate) fn report(out: &mut impl core::fmt::Write) -> core::fmt::Result {
     }
     let (name, net, steps) = black_box(("cubic n=256 F=0", SEED.surface(), 256));
     row(out, name, "any order", |total| unordered(net, steps, total))?;
+    for (name, net, steps) in rows() {
+        let (net, steps) = black_box((net, steps));
+        row(out, name, "checksum", |total| checksum(net, steps, total))?;
+    }
     Ok(())
 }
 

@@ -69,7 +69,15 @@ pub(super) fn multiply<W: Word, const R: usize>(
         }
         (value >> 32) as i32
     };
-    each(out, fours, first, &mut next);
+    let Some(([entry, ..], rest)) = out.as_chunks_mut::<3>().0.split_first_mut() else { return value };
+    *entry = first;
+    // Counted, which leaves one more register than an end does.
+    for [[x, ..], [y, ..], [z, ..], [w, ..]] in rest.as_chunks_mut::<4>().0.iter_mut().take(fours) {
+        for entry in [x, y, z, w] {
+            *entry = next();
+            as_written();
+        }
+    }
     next();
     *d = v;
     value
@@ -80,7 +88,7 @@ pub(super) fn multiply<W: Word, const R: usize>(
 fn each(out: &mut Room, fours: usize, first: i32, mut next: impl FnMut() -> i32) {
     let Some(([entry, ..], rest)) = out.as_chunks_mut::<3>().0.split_first_mut() else { return };
     *entry = first;
-    for [[x, ..], [y, ..], [z, ..], [w, ..]] in rest.as_chunks_mut::<4>().0.iter_mut().take(fours) {
+    for [[x, ..], [y, ..], [z, ..], [w, ..]] in rest.as_chunks_mut::<4>().0.get_mut(..fours).unwrap_or_default() {
         for entry in [x, y, z, w] {
             *entry = next();
             as_written();
@@ -88,18 +96,15 @@ fn each(out: &mut Room, fours: usize, first: i32, mut next: impl FnMut() -> i32)
     }
 }
 
-/// Makes 1 + 2·`turns` points of value `v[0]` with differences `v[1..]`, which go past them.
+/// Makes `count` points of value `v[0]` with differences `v[1..]`, which go past them.
 #[inline(never)]
-pub(super) fn lane(v: &mut [i32; 4], out: &mut Column, turns: usize, read: impl Fn(i32) -> i32) {
+pub(super) fn lane(v: &mut [i32; 4], out: &mut Column, count: usize, read: impl Fn(i32) -> i32) {
     let Some(([entry, ..], rest)) = out.as_chunks_mut::<6>().0.split_first_mut() else { return };
     let mut here = *v;
     *entry = read(here[0]);
-    for [[x, ..], [y, ..]] in rest.as_chunks_mut::<2>().0.iter_mut().take(turns) {
+    for [entry, ..] in rest.get_mut(..count.wrapping_sub(1)).unwrap_or_default() {
         step(&mut here);
-        *x = read(here[0]);
-        as_written();
-        step(&mut here);
-        *y = read(here[0]);
+        *entry = read(here[0]);
         as_written();
     }
     step(&mut here);

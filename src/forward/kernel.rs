@@ -94,7 +94,12 @@ impl<W: Word> Accumulate<W> {
     pub(crate) fn of(budget: &Budget, integer_bits: u32) -> Option<Self> {
         let shift = budget.dyadic().filter(|f| f + integer_bits <= <W as Word>::BITS)?;
         let room = <W as Word>::BITS - (shift + integer_bits);
-        let raise = if LANES > 1 || <W as Word>::BITS == 32 { 0 } else { room as usize };
+        let raise = match 48_u32.checked_sub(shift) {
+            _ if LANES > 1 || <W as Word>::BITS == 32 => 0,
+            // The same place for most: 16 bits above 48.
+            Some(raise) if raise <= room => raise as usize,
+            _ => room as usize,
+        };
         Some(Self {
             shift: shift as usize + raise,
             raise,
@@ -162,8 +167,14 @@ impl<W: Word> Mask<W> {
 
     /// What Δφ is multiplied by: 2^32/N.
     #[inline(always)]
-    fn factor(&self) -> i32 {
+    fn by(&self) -> i32 {
         1 << (32_usize.wrapping_sub(self.shift) & 31)
+    }
+
+    /// What Δφ is multiplied by where x and e are one number of 64 bits; `None` for an N that is too small for that.
+    #[cfg(forward_asm = "v7m")]
+    pub(super) fn factor(&self) -> Option<i32> {
+        (Self::JOINED && (2..32).contains(&self.shift)).then(|| self.by())
     }
 
     #[inline(always)]
@@ -181,13 +192,13 @@ impl<W: Word> Kernel for Mask<W> {
     type Word = W;
 
     fn start(&self, x: i32, e: W) -> (i32, W) {
-        (x, if Self::JOINED { e.wrapping_mul_i64(self.factor().into()) } else { e })
+        (x, if Self::JOINED { e.wrapping_mul_i64(self.by().into()) } else { e })
     }
 
     #[inline(always)]
     fn advance(&self, x: &mut i32, e: &mut W, d: W) {
         if Self::JOINED {
-            let change = i64::from(AsPrimitive::<i32>::as_(d)) * i64::from(self.factor());
+            let change = i64::from(AsPrimitive::<i32>::as_(d)) * i64::from(self.by());
             (*x, *e) = Self::part(Self::join(*x, *e).wrapping_add(change));
             return;
         }
@@ -207,7 +218,7 @@ impl<W: Word> Kernel for Mask<W> {
         if !Self::JOINED {
             return fill_by_steps(*self, x, e, d, out, count);
         }
-        (*x, *e) = Self::part(fill::multiply(Self::join(*x, *e), d, self.factor(), out, (count + 2) / 4));
+        (*x, *e) = Self::part(fill::multiply(Self::join(*x, *e), d, self.by(), out, (count + 2) / 4));
     }
 }
 

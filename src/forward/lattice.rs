@@ -1,5 +1,6 @@
 //! Lattices of surfaces.
 
+use super::checksum::checksum;
 use super::engine::{Engine, walk, walk_unordered};
 use super::form::Form;
 use super::{Budget, LatticeError, Steps};
@@ -134,6 +135,25 @@ impl<'a> Lattice<'a> {
     #[inline]
     pub fn for_each_unordered(&self, f: impl FnMut(LatticePoint)) {
         walk_unordered(&self.form, &self.budget, f);
+    }
+
+    /// The wrapping sum of all coordinates of all points: what a self-test on a board compares with what a host says.
+    ///
+    /// By [`for_each_unordered`](Self::for_each_unordered); with the feature `asm` by rows in assembly, on cores that
+    /// there are some for, where the degree is at most 3, N a power of two and the coordinates fit with it.
+    ///
+    /// ```
+    /// use embedded_surfaces::forward::{Lattice, Steps};
+    /// use embedded_surfaces::patch::{BilinearPatch, Surface};
+    /// let patch = BilinearPatch::from_ints([[[0, 0, 5], [0, 9, 5]], [[9, 0, 5], [9, 9, 5]]])?;
+    /// let lattice = Lattice::new(patch.surface(), Steps::uniform(9)?)?;
+    /// // The coordinates are 0 ..= 9, 0 ..= 9 and 5.
+    /// assert_eq!(lattice.checksum(), 10 * (45 + 45) + 100 * 5);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn checksum(&self) -> i32 {
+        checksum(&self.form, &self.budget)
     }
 
     /// The points as an iterator, in row order.

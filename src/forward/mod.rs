@@ -28,8 +28,11 @@
 //! The narrowest of `i32`, `i64`, `i128` with (2K+1)·N < 2^w is taken; what fits none is a
 //! [`LatticeError::Budget`].
 
+#[cfg(forward_asm)]
+mod asm;
 mod bounds;
 mod budget;
+mod checksum;
 mod curve;
 mod engine;
 mod estimate;

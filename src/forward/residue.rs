@@ -19,7 +19,7 @@ use super::form::{Form, Kind};
 use super::kernel::Accumulate;
 use super::lattice::LatticePoint;
 use super::run::{Buffer, PAIRED, Run, Runs};
-use super::table::{Table, double_stride, each_column, step, step_r, step_s};
+use super::table::{Table, double_stride, each_column, step, step_r, step_s, step_triangle};
 use super::walk::Walker;
 use crate::num::Coord;
 
@@ -54,7 +54,7 @@ impl Place {
         [Self::Small, Self::Screen, Self::Large].into_iter().find(holds)
     }
 
-    fn shift(self) -> u32 {
+    pub(super) fn shift(self) -> u32 {
         match self {
             Self::Small => 23,
             Self::Screen => 22,
@@ -114,7 +114,7 @@ impl<'f, 'a> Classes<'f, 'a> {
     #[inline(never)]
     pub(super) fn set(&self, class: &mut Class, i: u32, j: u32) {
         for (axis, class) in class.iter_mut().enumerate() {
-            let Some((table, value)) = self.base.origin(axis) else { return };
+            let Some((table, _, value)) = self.base.start_of(axis) else { return };
             let mut t = *table;
             t[0][0] = value;
             (0..i).for_each(|_| step_r(&mut t));
@@ -133,18 +133,29 @@ impl<'f, 'a> Classes<'f, 'a> {
     /// Moves a class to its next row.
     #[inline(never)]
     pub(super) fn next_row(&self, class: &mut Class) {
-        if self.form.kind != Kind::Triangle {
-            return class.iter_mut().for_each(step_s);
+        if self.form.kind == Kind::Triangle {
+            class.iter_mut().for_each(step_triangle);
+        } else {
+            class.iter_mut().for_each(step_s);
         }
-        // Of a triangle, what is left out here is zero.
-        for [one, two, three, four] in class {
-            for (entry, next) in one.iter_mut().zip(*two).take(3) {
-                *entry = entry.wrapping_add(next);
+    }
+
+    /// Gives every row of every class.
+    #[inline(always)]
+    pub(super) fn each_row(&self, class: &mut Class, mut f: impl FnMut(&Class, ClassRow)) {
+        let (stride, last_row) = (self.count(), self.last_row());
+        for first_row in 0..stride {
+            for i in 0..stride {
+                self.set(class, i, first_row);
+                let mut j = first_row;
+                while j <= last_row {
+                    if let Some(rest) = self.last_in_row(j).checked_sub(i) {
+                        f(class, ClassRow { i, j, stride, count: (rest >> self.bits) + 1 });
+                    }
+                    self.next_row(class);
+                    j += stride;
+                }
             }
-            for (entry, next) in two.iter_mut().zip(*three).take(2) {
-                *entry = entry.wrapping_add(next);
-            }
-            three[0] = three[0].wrapping_add(four[0]);
         }
     }
 
@@ -207,16 +218,15 @@ impl Runs for Paired<'_, '_> {
         }
         let left = (self.classes.last_in_row(j) + 1).wrapping_sub(i);
         let count = left.min(PAIRED as u32);
-        // A run of full length makes an odd number of points in each column.
-        let turns = (count as usize + 2) / 4;
         let place = self.classes.place;
         for (column, row) in self.row.iter_mut().enumerate() {
+            let here = (count as usize + 1 - column) / 2;
             for (axis, row) in row.iter_mut().enumerate() {
                 let Some(room) = buffer.column(axis, column) else { continue };
                 match place {
-                    Place::Small => lane(row, room, turns, read::<23>),
-                    Place::Screen => lane(row, room, turns, read::<22>),
-                    Place::Large => lane(row, room, turns, read::<16>),
+                    Place::Small => lane(row, room, here, read::<23>),
+                    Place::Screen => lane(row, room, here, read::<22>),
+                    Place::Large => lane(row, room, here, read::<16>),
                 }
             }
         }
@@ -232,35 +242,21 @@ impl Runs for Paired<'_, '_> {
 /// Visits all points, class by class.
 #[inline]
 pub(super) fn visit(classes: &Classes<'_, '_>, mut f: impl FnMut(LatticePoint)) {
-    let (count, last_row) = (classes.count(), classes.last_row());
     let mut class = Class::default();
-    for first_row in 0..count {
-        for first in 0..count {
-            classes.set(&mut class, first, first_row);
-            let mut j = first_row;
-            while j <= last_row {
-                if let Some(rest) = classes.last_in_row(j).checked_sub(first) {
-                    let row = ClassRow { i: first, j, stride: count, count: (rest >> classes.bits) + 1 };
-                    match classes.place {
-                        Place::Small => visit_row::<23>(&class, row, &mut f),
-                        Place::Screen => visit_row::<22>(&class, row, &mut f),
-                        Place::Large => visit_row::<16>(&class, row, &mut f),
-                    }
-                }
-                classes.next_row(&mut class);
-                j += count;
-            }
-        }
-    }
+    classes.each_row(&mut class, |class, row| match classes.place {
+        Place::Small => visit_row::<23>(class, row, &mut f),
+        Place::Screen => visit_row::<22>(class, row, &mut f),
+        Place::Large => visit_row::<16>(class, row, &mut f),
+    });
 }
 
 /// The points i, i + stride, … of row j.
 #[derive(Clone, Copy, Debug)]
-struct ClassRow {
+pub(super) struct ClassRow {
     i: u32,
     j: u32,
     stride: u32,
-    count: u32,
+    pub(super) count: u32,
 }
 
 #[inline(never)]

@@ -10,7 +10,7 @@ use super::lattice::LatticePoint;
 /// The most points of a run: one more than a multiple of four, as [`fill`](super::fill) makes them.
 pub(super) const RUN: usize = 49;
 
-/// The most points of a run in pairs of columns: an odd number in each.
+/// The most points of a run in pairs of columns.
 pub(super) const PAIRED: usize = RUN + 1;
 
 /// Room for the points of a run, x, y, z of each together.

@@ -71,6 +71,18 @@ pub(crate) fn step_s<W: Word, const R: usize>(t: &mut Table<W, R>) {
     }
 }
 
+/// [`step_s`] for a triangle of degree 3 at most: what is left out is zero.
+#[inline(always)]
+pub(super) fn step_triangle<W: Word>([one, two, three, four]: &mut Table<W, 4>) {
+    for (entry, next) in one.iter_mut().zip(*two).take(3) {
+        *entry = entry.wrapping_plus(next);
+    }
+    for (entry, next) in two.iter_mut().zip(*three).take(2) {
+        *entry = entry.wrapping_plus(next);
+    }
+    three[0] = three[0].wrapping_plus(four[0]);
+}
+
 /// Moves a row of differences one step.
 #[inline(always)]
 pub(crate) fn step<W: Word, const R: usize>(d: &mut [W; R]) {

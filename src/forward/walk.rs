@@ -303,9 +303,9 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
         remaining(self.position, self.last_in_row, self.last_row, self.shrinks)
     }
 
-    /// The table, and N·x + e at the first point as the kernel has it, per axis.
-    pub(super) fn origin(&self, axis: usize) -> Option<(&Table<K::Word, R>, K::Word)> {
-        self.table.get(axis).zip(self.start.1.get(axis).copied())
+    /// The table of an axis, and x and e at the start of the row as the kernel has them.
+    pub(super) fn start_of(&self, axis: usize) -> Option<(&Table<K::Word, R>, i32, K::Word)> {
+        Some((self.table.get(axis)?, *self.start.0.get(axis)?, *self.start.1.get(axis)?))
     }
 }
 
