@@ -42,7 +42,7 @@ mod assembly {
     use crate::forward::engine::integer_bits;
     use crate::forward::form::{Form, Kind};
     use crate::forward::kernel::{Accumulate, Mask};
-    use crate::forward::table::{Table, step_triangle, step_s};
+    use crate::forward::table::{Table, step_s, step_triangle};
     use crate::forward::walk::Walker;
     use crate::forward::{Accumulator, Budget};
     use crate::num::Word;

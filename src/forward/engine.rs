@@ -191,10 +191,7 @@ pub(super) fn walk(form: &Form<'_>, budget: &Budget, mut f: impl FnMut(LatticePo
     let fold = Fold { state: (), f: |(), p| f(p) };
     if LANES > 1 {
         with_walker!(form, budget, |walker, Variant| walker.run(fold).state);
-    } else if MANY_REGISTERS
-        && form.weights().is_none()
-        && budget.accumulator == Accumulator::I32
-        && form.degree() < 4
+    } else if MANY_REGISTERS && form.weights().is_none() && budget.accumulator == Accumulator::I32 && form.degree() < 4
     {
         if let Some(kernel) = Mask::<i32>::of(budget) {
             Walker::<_, 4>::new(kernel, form, budget).run(fold);

@@ -30,7 +30,14 @@ pub(crate) trait Kernel: Copy {
 
     /// Writes the points of a row to the first of each three entries of `out`, and goes past them.
     #[inline(never)]
-    fn fill<const R: usize>(&self, x: &mut i32, e: &mut Self::Word, d: &mut [Self::Word; R], out: &mut Room, count: usize) {
+    fn fill<const R: usize>(
+        &self,
+        x: &mut i32,
+        e: &mut Self::Word,
+        d: &mut [Self::Word; R],
+        out: &mut Room,
+        count: usize,
+    ) {
         fill_by_steps(*self, x, e, d, out, count);
     }
 

@@ -48,7 +48,8 @@ impl Place {
         let (low, high) = (coordinates().min()?, coordinates().max()?);
         let holds = |place: &Self| {
             let bits = 32 - place.shift();
-            let (least, most) = if *place == Self::Small { (0, 1 << bits) } else { (-1 << (bits - 1), 1 << (bits - 1)) };
+            let (least, most) =
+                if *place == Self::Small { (0, 1 << bits) } else { (-1 << (bits - 1), 1 << (bits - 1)) };
             least <= low && high < most
         };
         [Self::Small, Self::Screen, Self::Large].into_iter().find(holds)

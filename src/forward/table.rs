@@ -132,7 +132,11 @@ fn powers<W: Word, const R: usize>(n: u32) -> [W; R] {
 
 /// Applies `change` to the columns up to `last`.
 #[inline(always)]
-pub(super) fn each_column<W: Word, const R: usize>(t: &mut Table<W, R>, last: usize, change: impl Fn(usize, &mut [W; R])) {
+pub(super) fn each_column<W: Word, const R: usize>(
+    t: &mut Table<W, R>,
+    last: usize,
+    change: impl Fn(usize, &mut [W; R]),
+) {
     for a in 0..R {
         if a > last {
             return;
