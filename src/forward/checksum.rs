@@ -73,19 +73,21 @@ mod assembly {
     fn product(form: &Form<'_>, budget: &Budget, kernel: Mask<i32>) -> Option<i32> {
         let by = kernel.factor()?;
         let mut walker = Walker::<_, 4>::blank(kernel);
-        walker.set_up(form, budget);
-        let (mut tables, mut values) = ([[[0; 4]; 4]; 3], [0_i64; 3]);
-        for (axis, (table, value)) in tables.iter_mut().zip(&mut values).enumerate() {
-            let (differences, x, e) = walker.start_of(axis)?;
-            (*table, *value) = (*differences, i64::from(x) << 32 | i64::from(e as u32));
+        walker.set_up_points(form, budget);
+        let (mut tables, mut e) = ([[[0; 4]; 4]; 3], [0; 3]);
+        for (axis, (table, e)) in tables.iter_mut().zip(&mut e).enumerate() {
+            let (differences, x, below) = walker.start_of(axis)?;
+            *table = *differences;
+            (table[0][0], *e) = (x, below);
         }
-        let (mut sum, mut e) = (0_i32, [0; 3]);
+        let mut sum = 0_i32;
         for j in 0..=form.last_row() {
-            for ((table, value), e) in tables.iter_mut().zip(&mut values).zip(&mut e) {
-                (table[0][0], *e) = ((*value >> 32) as i32, *value as i32);
-                *value = value.wrapping_add(i64::from(table[1][0]) * i64::from(by));
-            }
             sum = sum.wrapping_add(product_row(&tables, &e, by, form.last_in_row(j) + 1));
+            for ([[x, ..], [d, ..], ..], e) in tables.iter_mut().zip(&mut e) {
+                let value = (i64::from(*x) << 32 | i64::from(*e as u32)).wrapping_add(i64::from(*d) * i64::from(by));
+                // What the tables' step adds to x is taken off before.
+                (*x, *e) = (((value >> 32) as i32).wrapping_sub(*d), value as i32);
+            }
             step(form, &mut tables);
         }
         Some(sum)
@@ -94,7 +96,7 @@ mod assembly {
     #[inline(never)]
     fn wide(form: &Form<'_>, budget: &Budget, kernel: Accumulate<i64>) -> Option<i32> {
         let mut walker = Walker::<_, 4>::blank(kernel);
-        walker.set_up(form, budget);
+        walker.set_up_points(form, budget);
         let mut tables = [[[0; 4]; 4]; 3];
         for (axis, table) in tables.iter_mut().enumerate() {
             let (differences, _, value) = walker.start_of(axis)?;

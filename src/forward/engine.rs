@@ -219,7 +219,7 @@ fn each_run(form: &Form<'_>, budget: &Budget, sink: Sink<'_>) {
     #[inline(never)]
     fn polynomial<K: Kernel, const R: usize>(kernel: K, form: &Form<'_>, budget: &Budget, sink: Sink<'_>) {
         let mut walker = Walker::<K, R>::blank(kernel);
-        walker.set_up(form, budget);
+        walker.set_up_points(form, budget);
         each(&mut walker, sink);
     }
 

@@ -102,7 +102,7 @@ impl<'f, 'a> Classes<'f, 'a> {
         let kernel = Accumulate::<i64>::of(budget, integer_bits(form))?;
         let down = kernel.fraction_bits() as i32 - place.shift() as i32;
         let mut classes = Self { form, base: Walker::blank(kernel), place, bits, down };
-        classes.base.set_up(form, budget);
+        classes.base.set_up_points(form, budget);
         Some(classes)
     }
 
@@ -132,7 +132,7 @@ impl<'f, 'a> Classes<'f, 'a> {
     }
 
     /// Moves a class to its next row.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn next_row(&self, class: &mut Class) {
         if self.form.kind == Kind::Triangle {
             class.iter_mut().for_each(step_triangle);

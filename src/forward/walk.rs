@@ -119,6 +119,19 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
     /// Starts the walk over `form`, whose degrees are below `R`.
     #[inline(never)]
     pub(crate) fn set_up(&mut self, form: &Form<'_>, budget: &Budget) {
+        self.set_up_tables(form, budget);
+        self.start_row::<true>();
+    }
+
+    /// [`set_up`](Self::set_up) for a walk that nobody asks for tangents.
+    #[inline(never)]
+    pub(super) fn set_up_points(&mut self, form: &Form<'_>, budget: &Budget) {
+        self.set_up_tables(form, budget);
+        self.start_row::<false>();
+    }
+
+    #[inline(never)]
+    fn set_up_tables(&mut self, form: &Form<'_>, budget: &Budget) {
         let drop = 16 - budget.fraction_bits;
         for (axis, table) in self.table.iter_mut().enumerate() {
             difference_table(table, form, &|a, b| form.bits(axis, a, b) >> drop);
@@ -133,7 +146,6 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
         self.last_row = form.last_row();
         self.shrinks = form.kind == Kind::Triangle;
         self.place(form, budget);
-        self.start_row::<true>();
     }
 
     /// Sets x and e at the first point.
