@@ -113,7 +113,7 @@ fn lattices(out: &mut impl core::fmt::Write, net: SurfaceNet<'_>, pick: u32) -> 
         let steps = Steps::new(r, s).map_err(|_| core::fmt::Error)?;
         let lattice = Lattice::new(net, steps).map_err(|_| core::fmt::Error)?;
         let Some((count, digest, sum)) = agreed(&lattice) else {
-            writeln!(out, "{lattice:?}: the forms differ")?;
+            writeln!(out, "{:?} {r} x {s}: the forms differ", net.degrees())?;
             return Err(core::fmt::Error);
         };
         writeln!(out, "{:?} {r} x {s}: {count} points, digest {digest:08x}, sum {sum}", net.degrees())?;

@@ -45,10 +45,23 @@ fn parse(report: &str) -> Vec<Row> {
 fn instructions_are_as_budgeted() {
     let mut host = String::new();
     fw_bench::report(&mut host).unwrap();
-    let columns = check("fw_bench", &parse(&host));
+    let host = parse(&host);
+    let columns = check("fw_bench", "", &host);
     for (short, rows) in columns {
         // A call and a return, and what the counter is off.
         assert!((1000..=1006).contains(&rows[0].instructions), "{short}: the counter says {:?}", rows[0]);
+    }
+}
+
+/// With the feature `asm`: the rows that it is for.
+#[test]
+fn assembly_takes_what_is_budgeted() {
+    let mut host = String::new();
+    fw_bench::report(&mut host).unwrap();
+    let host = parse(&host);
+    for (short, rows) in check("fw_bench", "asm", &host) {
+        let cubic = rows.iter().find(|row| row.name.contains("n=256 F=0, checksum")).unwrap();
+        assert!(cubic.instructions < 20 * cubic.points, "{short}: {cubic:?}");
     }
 }
 
@@ -57,18 +70,19 @@ fn a_frame_takes_what_is_budgeted() {
     assert_eq!((teapot::vertices().count(), frame::BAND), (306, 320 * 16));
     let mut host = String::new();
     fw_cost::report(&mut host).unwrap();
-    check("fw_cost", &parse(&host));
+    check("fw_cost", "", &parse(&host));
 }
 
-/// Runs an example on all targets: the same points and sums as here, and the instructions that are budgeted. Returns
-/// each target's rows.
-fn check(example: &str, host: &[Row]) -> Vec<(&'static str, Vec<Row>)> {
+/// Runs an example on all targets: the same points and sums as here, and the instructions that are budgeted; with a feature
+/// only those of checksums, which are all that it changes. Returns each target's rows.
+fn check(example: &str, feature: &str, host: &[Row]) -> Vec<(&'static str, Vec<Row>)> {
     let installed: Vec<_> = TARGETS.into_iter().filter(|(_, target)| target_is_installed(target)).collect();
     for (_, target) in TARGETS.iter().filter(|row| !installed.contains(row)) {
         skip(target, &format!("the Rust target (rustup target add {target})"));
     }
     let targets: Vec<_> = installed.iter().map(|(_, target)| *target).collect();
-    let folder = cargo_build_all(&targets, example, &["--example", example]);
+    let title = if feature.is_empty() { example.into() } else { format!("{example} with {feature}") };
+    let folder = cargo_build_all(&targets, &title.replace(' ', "-"), &["--example", example, "--features", feature]);
     let mut columns = Vec::new();
     for (short, target) in installed {
         let Some(rows) = rows(target, &folder, example) else { continue };
@@ -76,9 +90,10 @@ fn check(example: &str, host: &[Row]) -> Vec<(&'static str, Vec<Row>)> {
             assert_eq!((&there.name, there.points, there.sum), (&here.name, here.points, here.sum), "{target}");
         }
         assert_eq!(rows.len(), host.len());
-        let measured: Vec<_> =
-            rows.iter().map(|row| (format!("instructions, {}", row.name), row.instructions)).collect();
-        budgets::check(&format!("{example}, {target}"), &measured);
+        let is_budgeted = |row: &&Row| feature.is_empty() || row.name.contains("checksum");
+        let measured = rows.iter().filter(is_budgeted);
+        let measured: Vec<_> = measured.map(|row| (format!("instructions, {}", row.name), row.instructions)).collect();
+        budgets::check(&format!("{title}, {target}"), &measured);
         columns.push((short, rows));
     }
     print_table(host, &columns);

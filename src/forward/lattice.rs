@@ -39,11 +39,14 @@ pub enum RowStep {
 ///
 /// * [`for_each`](Self::for_each): internal iteration, the fast path. Set-up about 3(m+1)(h+1)(m+h) operations, then
 ///   3·m additions a point (m: degree in the first direction).
-/// * [`points`](Self::points): the same as an iterator; `fold` and `for_each` on it are the fast path too.
+/// * [`for_each_unordered`](Self::for_each_unordered): the same points in an order that is left open.
+/// * [`points`](Self::points): an iterator in row order; `fold` and `for_each` on it go by runs of points too.
 ///
 /// State of a walk, on the stack (computed; what the compiler spills comes on top): 3·(d+1)²·w/8 bytes plus
 /// 6·(d+1)·w/8, with d the larger degree rounded up to 3, 5 or 8 and w the accumulator's bits, so 0.6 KB for bicubics
-/// in `i64` and 4.8 KB at most; a third more for rational nets, and 0.8 KB for the lanes of 64-bit hosts.
+/// in `i64` and 4.8 KB at most; a third more for rational nets. The points of a run come on top: 0.6 KB on 32-bit cores,
+/// 0.8 KB for the lanes of 64-bit hosts. Sub-lattices take 1 KB ([`for_each_unordered`](Self::for_each_unordered)), on
+/// ARMv6-M 1.6 KB in row order.
 ///
 /// ```
 /// use embedded_surfaces::forward::{Lattice, Steps};

@@ -43,9 +43,9 @@
 //!
 //! | | M0 | M4 | RV32 |
 //! |---|---|---|---|
-//! | row order | ROW |
-//! | any order | ANY |
-//! | [`Lattice::checksum`] with the feature `asm` | SUM |
+//! | row order | 49.0 | 30.5 | 24.4 |
+//! | any order | 39.0 | 21.8 | 18.7 |
+//! | [`Lattice::checksum`] with the feature `asm` | 19.0 | 13.5 | 17.9 |
 
 #[cfg(forward_asm)]
 mod asm;
