@@ -42,7 +42,7 @@ impl Random {
             0 => low << 16,
             1 => high << 16,
             _ => {
-                let whole = low + (self.next() % (high - low) as u32) as i32;
+                let whole = low + ((u64::from(self.next()) * u64::from(high.abs_diff(low))) >> 24) as i32;
                 (whole << 16) + (((self.next() & 0xffff) >> (16 - fraction)) << (16 - fraction)) as i32
             }
         }

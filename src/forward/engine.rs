@@ -243,5 +243,5 @@ fn each_run(form: &Form<'_>, budget: &Budget, sink: Sink<'_>) {
     if PAIRS && let Some(mut walk) = Classes::new(form, budget, 1).and_then(Paired::new) {
         return each(&mut walk, sink);
     }
-    choose!(form, budget, run, run_quotient)
+    choose!(form, budget, run, run_quotient);
 }

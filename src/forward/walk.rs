@@ -74,6 +74,9 @@ impl<W: Word, const R: usize> Site for At<'_, W, R> {
     }
 }
 
+/// A table, and x and e at the start of its row.
+type Start<'a, W, const R: usize> = (&'a Table<W, R>, i32, W);
+
 /// A walk over a lattice: the engine itself.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Walker<K: Kernel, const R: usize> {
@@ -316,7 +319,7 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
     }
 
     /// The table of an axis, and x and e at the start of the row as the kernel has them.
-    pub(super) fn start_of(&self, axis: usize) -> Option<(&Table<K::Word, R>, i32, K::Word)> {
+    pub(super) fn start_of(&self, axis: usize) -> Option<Start<'_, K::Word, R>> {
         Some((self.table.get(axis)?, *self.start.0.get(axis)?, *self.start.1.get(axis)?))
     }
 }
