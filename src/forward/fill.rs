@@ -85,7 +85,7 @@ pub(super) fn multiply<W: Word, const R: usize>(
 
 /// Sets the first of each three entries to `first`, and after it to what `next` gives.
 #[inline(always)]
-fn each(out: &mut Room, fours: usize, first: i32, mut next: impl FnMut() -> i32) {
+pub(super) fn each(out: &mut Room, fours: usize, first: i32, mut next: impl FnMut() -> i32) {
     let Some(([entry, ..], rest)) = out.as_chunks_mut::<3>().0.split_first_mut() else { return };
     *entry = first;
     for [[x, ..], [y, ..], [z, ..], [w, ..]] in rest.as_chunks_mut::<4>().0.get_mut(..fours).unwrap_or_default() {

@@ -223,7 +223,18 @@ impl<W: Word> Kernel for Mask<W> {
     #[inline(never)]
     fn fill<const R: usize>(&self, x: &mut i32, e: &mut W, d: &mut [W; R], out: &mut Room, count: usize) {
         if !Self::JOINED {
-            return fill_by_steps(*self, x, e, d, out, count);
+            let (kernel, mut here, mut row, first) = (*self, (*x, *e), *d, *x);
+            let mut next = || {
+                kernel.advance(&mut here.0, &mut here.1, row[1]);
+                for a in 1..R - 1 {
+                    row[a] = row[a].wrapping_plus(row[a + 1]);
+                }
+                here.0
+            };
+            fill::each(out, (count + 2) / 4, first, &mut next);
+            next();
+            ((*x, *e), *d) = (here, row);
+            return;
         }
         (*x, *e) = Self::part(fill::multiply(Self::join(*x, *e), d, self.by(), out, (count + 2) / 4));
     }
