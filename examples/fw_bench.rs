@@ -128,6 +128,24 @@ fn shade(net: SurfaceNet<'_>, tile: &mut Tile<'_, u16>, total: &mut Total) {
     total.points = scene.draw(tile, &|at: Fragment| u16::from(at.shade)).points as u32;
 }
 
+/// The same in any order.
+#[inline(never)]
+fn unordered(net: SurfaceNet<'_>, steps: u32, total: &mut Total) {
+    let lattice = Steps::uniform(steps).and_then(|steps| Lattice::new(net, steps));
+    let Ok(lattice) = lattice else { return };
+    let mut sum = 0_i32;
+    lattice.for_each_unordered(|p| sum = sum.wrapping_add(p.x).wrapping_add(p.y).wrapping_add(p.z));
+    *total = Total { points: lattice.point_count() as u32, sum };
+}
+
+/// The sum by itself.
+#[inline(never)]
+fn checksum(net: SurfaceNet<'_>, steps: u32, total: &mut Total) {
+    let lattice = Steps::uniform(steps).and_then(|steps| Lattice::new(net, steps));
+    let Ok(lattice) = lattice else { return };
+    *total = Total { points: lattice.point_count() as u32, sum: lattice.checksum() };
+}
+
 /// A row whose count is known: an instruction a point.
 #[inline(never)]
 fn nops() {
@@ -169,6 +187,10 @@ fn lattice_rows(
     let mut total = Total::default();
     let instructions = counter::count(|| generate(net, steps, &mut total));
     write_row(out, (name, bits, "generation"), instructions, &total)?;
+    let instructions = counter::count(|| unordered(net, steps, &mut total));
+    write_row(out, (name, bits, "any order"), instructions, &total)?;
+    let instructions = counter::count(|| checksum(net, steps, &mut total));
+    write_row(out, (name, bits, "checksum"), instructions, &total)?;
     screen.depth.fill(u16::MAX);
     let instructions = counter::count(|| store(net, steps, screen, &mut total));
     total.sum = sum_of(&screen.depth);

@@ -43,6 +43,7 @@
 //! | `graphics` (default) | `graphics`: drawing into `embedded-graphics-core` targets |
 //! | `styled` | `Transform` on models and curves, `into_styled` on curves; needs the full `embedded-graphics` |
 //! | `defmt` | `defmt::Format` on every public type |
+//! | `asm` | rows in assembly for ARMv6-M, ARMv7-M and RV32 where the crate sums them itself: the only `unsafe` code |
 //! | `std` | `reference`; the rest stays `no_std` code |
 //!
 //! # What it asks of a target
@@ -50,7 +51,8 @@
 //! `thumbv7m`, `thumbv7em` and `riscv32imc` under emulation. Nothing should panic on a path a user can reach: CI looks
 //! for `core::panicking` in a linked firmware that walks lattices; the rest is fuzzed on a host.
 #![no_std]
-#![forbid(unsafe_code)]
+#![cfg_attr(not(feature = "asm"), forbid(unsafe_code))]
+#![cfg_attr(feature = "asm", deny(unsafe_code))]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 #[cfg(any(test, feature = "std"))]

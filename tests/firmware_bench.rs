@@ -1,5 +1,5 @@
-//! Instructions under QEMU against `tests/budgets.txt`, compared exactly: `examples/fw_bench.rs` and `fw_cost.rs` for v6-M
-//! code, M4 and RV32. Prints the tables of instructions a point: `cargo test --release --test firmware_bench -- --nocapture`.
+//! Instructions under QEMU against `tests/budgets.txt`, compared exactly: `examples/fw_bench.rs`, with the feature `asm` too,
+//! and `fw_cost.rs` for v6-M code, M4 and RV32. Prints the tables of instructions a point: `cargo test --release --test firmware_bench -- --nocapture`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 #![allow(clippy::duplicate_mod, reason = "each example brings its counter along")]
 
@@ -47,23 +47,44 @@ fn a_frame_takes_what_is_budgeted() {
     check("fw_cost", &parse(&host));
 }
 
+/// With the feature `asm`: the rows that it is for.
+#[test]
+fn assembly_takes_what_is_budgeted() {
+    let mut host = String::new();
+    fw_bench::report(&mut host).unwrap();
+    let folder = cargo_build_all(&counted(), "asm", &firmware::WITH_ASSEMBLY);
+    let image = |target: &str| folder.join(target).join("release/examples/fw_bench");
+    let columns = run_all("fw_bench with asm", &counted(), image, |row| row.name.contains("checksum"));
+    compare(&columns, &parse(&host));
+    for (short, rows) in &columns {
+        let cubic = rows.iter().find(|row| row.name.contains("n=256 F=0, checksum")).unwrap();
+        assert!(cubic.instructions < 20 * cubic.points, "{short}: {cubic:?}");
+    }
+}
+
 /// Runs an example on all targets: the same points and sums as here, and the instructions that are budgeted. Returns
 /// each target's rows.
 fn check(example: &str, host: &[Row]) -> Vec<(&'static str, Vec<Row>)> {
-    let columns = run_all(example, &counted(), |target| images().join(target).join("release/examples").join(example));
+    let image = |target: &str| images().join(target).join("release/examples").join(example);
+    let columns = run_all(example, &counted(), image, |_| true);
     // The gate looks at level s in every build, at level 3 in a thorough one: here is what is fast.
     for target in counted() {
-        let elf = std::fs::read(images().join(target).join("release/examples").join(example)).unwrap();
+        let elf = std::fs::read(image(target)).unwrap();
         assert_eq!(offences(&elf), [], "{example} on {target}");
     }
-    for (short, rows) in &columns {
+    compare(&columns, host);
+    print_table(&columns);
+    columns
+}
+
+/// The same points and sums everywhere.
+fn compare(columns: &[(&str, Vec<Row>)], host: &[Row]) {
+    for (short, rows) in columns {
         for (there, here) in rows.iter().zip(host) {
             assert_eq!((&there.name, there.points, there.sum), (&here.name, here.points, here.sum), "{short}");
         }
         assert_eq!(rows.len(), host.len());
     }
-    print_table(&columns);
-    columns
 }
 
 #[test]

@@ -41,7 +41,7 @@ fn boards_draw_what_the_host_draws() {
         targets.retain(|target| target.starts_with("thumb"));
     }
     let folder = firmware::cargo_build_peers(&targets);
-    let columns = run_all("fw_peers", &targets, |target| folder.join(target).join("release/fw_peers"));
+    let columns = run_all("fw_peers", &targets, |target| folder.join(target).join("release/fw_peers"), |_| true);
     for (short, rows) in &columns {
         for row in rows {
             match host.iter().find(|other| other.name == row.name) {

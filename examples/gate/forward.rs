@@ -102,6 +102,7 @@ fn lattices(sum: &mut Sum, net: SurfaceNet<'_>, steps: Steps) {
         if Lattice::point_count(&lattice) < 1000 {
             each(sum, &lattice);
             points(sum, &lattice);
+            unordered(sum, &lattice);
             row_steps(sum, &lattice);
         }
     }
@@ -117,6 +118,13 @@ fn first(sum: &mut Sum, lattice: &Lattice<'_>) {
 #[inline(never)]
 fn each(sum: &mut Sum, lattice: &Lattice<'_>) {
     Lattice::for_each(lattice, |point| sum.add(point));
+}
+
+/// The order is left open, but the same everywhere.
+#[inline(never)]
+fn unordered(sum: &mut Sum, lattice: &Lattice<'_>) {
+    Lattice::for_each_unordered(lattice, |point| sum.add(point));
+    sum.add(Lattice::checksum(lattice));
 }
 
 /// An iterator over points is some kilobytes, so each has a frame of its own.

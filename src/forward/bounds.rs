@@ -68,6 +68,12 @@ impl<'f, 'a> Axis<'f, 'a> {
 
     /// Bounds on |x_r| and |x_s| (|x_u|, |x_v| of a triangle), over [`unit`].
     pub(super) fn slopes(&self) -> [u128; 2] {
+        if self.form.weights().is_none() {
+            let [by_r, by_s] = self.form.largest_edges(self.axis).map(u64::from);
+            let (m, h) = self.form.degrees;
+            // Below 2^36, of twice the coordinate.
+            return [2 * m as u64 * by_r, 2 * h as u64 * by_s].map(u128::from);
+        }
         let values = self.form.largest_differences(|a, b| self.value(a, b));
         let weights = self.form.largest_differences(|a, b| self.weight(a, b).into());
         let degrees = [self.form.degrees.0, self.form.degrees.1];
@@ -142,5 +148,11 @@ pub(super) fn longest_step(form: &Form<'_>) -> u32 {
 
 /// `ceil(a / b)`, 0 for b = 0.
 pub(super) fn ceil_div(a: u128, b: u128) -> u128 {
+    // Without the zeros that both end in, most quotients are of 32 bits.
+    let shift = (a | b).trailing_zeros() & 127;
+    let (a, b) = (a >> shift, b >> shift);
+    if let (Ok(a), Ok(b)) = (u32::try_from(a), u32::try_from(b)) {
+        return a.checked_div(b).map_or(0, |quotient| u128::from(quotient) + u128::from(quotient * b != a));
+    }
     a.checked_div(b).map_or(0, |quotient| quotient + u128::from(quotient * b != a))
 }

@@ -111,6 +111,21 @@ fn factors(form: &Form<'_>) -> [(u32, usize); 2] {
     [(r, form.degrees.0), second]
 }
 
+/// `weight` times all factors.
+fn scale(weight: u128, factors: [(u32, usize); 2]) -> Option<u128> {
+    factors.into_iter().try_fold(weight, |scale, (steps, exponent)| {
+        core::iter::repeat_n(u64::from(steps), exponent).try_fold(scale, times)
+    })
+}
+
+/// The product, in 64 bits where they do: most of what is checked is that small.
+fn times(a: u128, b: u64) -> Option<u128> {
+    match u64::try_from(a).ok().and_then(|a| a.checked_mul(b)) {
+        Some(product) => Some(product.into()),
+        None => a.checked_mul(b.into()),
+    }
+}
+
 impl Budget {
     /// Checks step counts and finds the accumulator.
     pub(crate) fn of(form: &Form<'_>) -> Result<Self, LatticeError> {
@@ -126,11 +141,9 @@ impl Budget {
         }
         let (largest_step, fraction_bits) = (longest_step(form), 16 - unused_bits(form));
         let largest_weight = largest_weight(form);
-        let range = 2 * u128::from(largest_step) + 1;
-        let scale = factors(form).into_iter().try_fold(largest_weight << fraction_bits, |n, (steps, exponent)| {
-            n.checked_mul(u128::from(steps).checked_pow(exponent as u32)?)
-        });
-        let accumulator = scale.and_then(|n| n.checked_mul(range)).map(|values| match 128 - values.leading_zeros() {
+        let range = 2 * u64::from(largest_step) + 1;
+        let scale = scale(largest_weight << fraction_bits, factors(form));
+        let accumulator = scale.and_then(|n| times(n, range)).map(|values| match 128 - values.leading_zeros() {
             0..=32 => Accumulator::I32,
             33..=64 => Accumulator::I64,
             _ => Accumulator::I128,

@@ -99,7 +99,7 @@ impl<'a> CurveLattice<'a> {
     /// Calls `f` with every point in order: the fast path, 3·m additions a point.
     #[inline]
     pub fn for_each(&self, mut f: impl FnMut(CurvePoint)) {
-        walk(&self.form, &self.budget, (), |(), p| f(CurvePoint::of(p)));
+        walk(&self.form, &self.budget, |p| f(CurvePoint::of(p)));
     }
 
     /// The points as an iterator, in order.

@@ -141,15 +141,32 @@ impl<'a> Form<'a> {
 
     /// The largest |difference| of neighbours along r and along s of the net values `value(a, b)`.
     pub(crate) fn largest_differences(&self, value: impl Fn(usize, usize) -> i128) -> [u128; 2] {
-        let [mut by_r, mut by_s] = [0; 2];
+        self.largest_gaps(|[a, b], [c, d]| value(a, b).abs_diff(value(c, d)))
+    }
+
+    /// [`largest_differences`](Self::largest_differences) of the raw bits of coordinate `axis`.
+    pub(super) fn largest_edges(&self, axis: usize) -> [u32; 2] {
+        let value = |[a, b]: [usize; 2]| {
+            self.points.get(self.index(a, b)).map_or(0, |p| match axis {
+                0 => p.x.to_bits(),
+                1 => p.y.to_bits(),
+                _ => p.z.to_bits(),
+            })
+        };
+        self.largest_gaps(|p, q| value(p).abs_diff(value(q)))
+    }
+
+    /// The largest `gap` of neighbours along r and along s.
+    #[inline(always)]
+    fn largest_gaps<T: Ord + Copy + Default>(&self, gap: impl Fn([usize; 2], [usize; 2]) -> T) -> [T; 2] {
+        let [mut by_r, mut by_s] = [T::default(); 2];
         for a in 0..=self.degrees.0 {
             for b in 0..=self.last_column_entry(a) {
-                let here = value(a, b);
                 if a < self.degrees.0 && b <= self.last_column_entry(a + 1) {
-                    by_r = value(a + 1, b).abs_diff(here).max(by_r);
+                    by_r = gap([a + 1, b], [a, b]).max(by_r);
                 }
                 if b < self.last_column_entry(a) {
-                    by_s = value(a, b + 1).abs_diff(here).max(by_s);
+                    by_s = gap([a, b + 1], [a, b]).max(by_s);
                 }
             }
         }

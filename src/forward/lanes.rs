@@ -9,7 +9,7 @@
 //! f(i + L) ≡ f(i) modulo L: the lowest log2 L bits of a lane never change, and differences of stride L do not have
 //! them. They can be dropped before the walk, exactly.
 
-use super::table::step;
+use super::table::{double_stride, step};
 use crate::num::Word;
 use num_traits::AsPrimitive;
 
@@ -108,17 +108,6 @@ fn spread<T, W: Word, const R: usize>(e: W, d: &[W; R], lane_of: impl Fn(W) -> T
         }
     }
     core::array::from_fn(|s| core::array::from_fn(|lane| lane_of(lanes[lane][s])))
-}
-
-/// To differences of twice the stride: (1 + Δ)² − 1 = Δ·(2 + Δ), so the s-th gets s factors 2 + Δ.
-#[inline(always)]
-fn double_stride<W: Word, const R: usize>(d: &mut [W; R]) {
-    for s in 1..R {
-        for a in s..R {
-            let next = if a + 1 < R { d[a + 1] } else { W::ZERO };
-            d[a] = d[a].wrapping_plus(d[a]).wrapping_plus(next);
-        }
-    }
 }
 
 // Functions of their own: inlined, LLVM scatters the lanes over scalar registers (measured: three times slower).

@@ -1,6 +1,7 @@
 //! Lattices of surfaces.
 
-use super::engine::{Engine, walk};
+use super::checksum::checksum;
+use super::engine::{Engine, walk, walk_unordered};
 use super::form::Form;
 use super::{Budget, LatticeError, Steps};
 use crate::patch::SurfaceNet;
@@ -38,11 +39,14 @@ pub enum RowStep {
 ///
 /// * [`for_each`](Self::for_each): internal iteration, the fast path. Set-up about 3(m+1)(h+1)(m+h) operations, then
 ///   3·m additions a point (m: degree in the first direction).
-/// * [`points`](Self::points): the same as an iterator; `fold` and `for_each` on it are the fast path too.
+/// * [`for_each_unordered`](Self::for_each_unordered): the same points in an order that is left open.
+/// * [`points`](Self::points): an iterator in row order; `fold` and `for_each` on it go by runs of points too.
 ///
 /// State of a walk, on the stack (computed; what the compiler spills comes on top): 3·(d+1)²·w/8 bytes plus
 /// 6·(d+1)·w/8, with d the larger degree rounded up to 3, 5 or 8 and w the accumulator's bits, so 0.6 KB for bicubics
-/// in `i64` and 4.8 KB at most; a third more for rational nets, and 0.8 KB for the lanes of 64-bit hosts.
+/// in `i64` and 4.8 KB at most; a third more for rational nets. The points of a run come on top: 0.6 KB on 32-bit cores,
+/// 0.8 KB for the lanes of 64-bit hosts. Sub-lattices take 1 KB ([`for_each_unordered`](Self::for_each_unordered)), on
+/// ARMv6-M 1.6 KB in row order.
 ///
 /// ```
 /// use embedded_surfaces::forward::{Lattice, Steps};
@@ -109,8 +113,50 @@ impl<'a> Lattice<'a> {
 
     /// Calls `f` with every point in row order: the fast path.
     #[inline]
-    pub fn for_each(&self, mut f: impl FnMut(LatticePoint)) {
-        walk(&self.form, &self.budget, (), |(), p| f(p));
+    pub fn for_each(&self, f: impl FnMut(LatticePoint)) {
+        walk(&self.form, &self.budget, f);
+    }
+
+    /// Calls `f` with every point once, in an order that is left open: for depth buffers, sums and other sinks that do
+    /// not ask for neighbours in turn.
+    ///
+    /// Where the step counts and the net allow it the lattice is walked in up to 16 sub-lattices in 32-bit arithmetic: a
+    /// polynomial surface of degree at most 3, N = 2^f (step counts that are powers of two) and at most 2 bits of f and
+    /// the coordinates more than 32. So it is for a cubic triangle of 256 steps with whole coordinates. All others are
+    /// walked as by [`for_each`](Self::for_each). The points are the same.
+    ///
+    /// ```
+    /// use embedded_surfaces::forward::{Lattice, Steps};
+    /// use embedded_surfaces::patch::{BilinearPatch, Surface};
+    /// let patch = BilinearPatch::from_ints([[[0, 0, 5], [0, 64, 9]], [[64, 0, 7], [64, 64, 1]]])?;
+    /// let lattice = Lattice::new(patch.surface(), Steps::uniform(64)?)?;
+    /// let mut seen = [[false; 65]; 65];
+    /// lattice.for_each_unordered(|p| seen[p.y as usize][p.x as usize] = true);
+    /// assert!(seen.iter().flatten().all(|seen| *seen));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[inline]
+    pub fn for_each_unordered(&self, f: impl FnMut(LatticePoint)) {
+        walk_unordered(&self.form, &self.budget, f);
+    }
+
+    /// The wrapping sum of all coordinates of all points: what a self-test on a board compares with what a host says.
+    ///
+    /// By [`for_each_unordered`](Self::for_each_unordered); with the feature `asm` by rows in assembly, on cores that
+    /// there are some for, where the degree is at most 3, N a power of two and the coordinates fit with it.
+    ///
+    /// ```
+    /// use embedded_surfaces::forward::{Lattice, Steps};
+    /// use embedded_surfaces::patch::{BilinearPatch, Surface};
+    /// let patch = BilinearPatch::from_ints([[[0, 0, 5], [0, 9, 5]], [[9, 0, 5], [9, 9, 5]]])?;
+    /// let lattice = Lattice::new(patch.surface(), Steps::uniform(9)?)?;
+    /// // The coordinates are 0 ..= 9, 0 ..= 9 and 5.
+    /// assert_eq!(lattice.checksum(), 10 * (45 + 45) + 100 * 5);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn checksum(&self) -> i32 {
+        checksum(&self.form, &self.budget)
     }
 
     /// The points as an iterator, in row order.

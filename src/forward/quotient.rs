@@ -9,6 +9,7 @@
 
 use super::Budget;
 use super::form::{Form, Kind};
+use super::run::{Buffer, RUN, Run, Runs};
 use super::table::{Table, difference_table, double_steps, step, step_r, step_s};
 use super::tangent::Weights;
 use super::visit::{Fraction, Site, Visit};
@@ -329,6 +330,20 @@ impl<W: Word, const R: usize> QuotientWalker<W, R> {
     /// The points still to come.
     pub(crate) fn remaining(&self) -> u64 {
         remaining(self.position, self.last_in_row, self.last_row, self.shrinks)
+    }
+}
+
+impl<W: Word, const R: usize> Runs for QuotientWalker<W, R> {
+    #[inline(never)]
+    fn next_run(&mut self, buffer: &mut Buffer) -> Option<Run> {
+        let (i, j) = self.position;
+        let mut count = 0;
+        while count < RUN && self.position.1 == j {
+            let (_, _, point) = self.next_point()?;
+            buffer.set(count, point);
+            count += 1;
+        }
+        Some(Run { i, j, stride: 1, count })
     }
 }
 

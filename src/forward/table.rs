@@ -71,6 +71,18 @@ pub(crate) fn step_s<W: Word, const R: usize>(t: &mut Table<W, R>) {
     }
 }
 
+/// [`step_s`] for a triangle of degree 3 at most: what is left out is zero.
+#[inline(always)]
+pub(super) fn step_triangle<W: Word>([one, two, three, four]: &mut Table<W, 4>) {
+    for (entry, next) in one.iter_mut().zip(*two).take(3) {
+        *entry = entry.wrapping_plus(next);
+    }
+    for (entry, next) in two.iter_mut().zip(*three).take(2) {
+        *entry = entry.wrapping_plus(next);
+    }
+    three[0] = three[0].wrapping_plus(four[0]);
+}
+
 /// Moves a row of differences one step.
 #[inline(always)]
 pub(crate) fn step<W: Word, const R: usize>(d: &mut [W; R]) {
@@ -98,6 +110,17 @@ fn double<W: Word, const R: usize>(d: &mut [W; R]) {
     *d = samples;
 }
 
+/// To differences of twice the stride: (1 + Δ)² − 1 = Δ·(2 + Δ), so the s-th gets s factors 2 + Δ.
+#[inline(always)]
+pub(super) fn double_stride<W: Word, const R: usize>(d: &mut [W; R]) {
+    for s in 1..R {
+        for a in s..R {
+            let next = if a + 1 < R { d[a + 1] } else { W::ZERO };
+            d[a] = d[a].wrapping_plus(d[a]).wrapping_plus(next);
+        }
+    }
+}
+
 /// 1, n, n², …
 fn powers<W: Word, const R: usize>(n: u32) -> [W; R] {
     let mut powers = [W::ONE; R];
@@ -109,7 +132,11 @@ fn powers<W: Word, const R: usize>(n: u32) -> [W; R] {
 
 /// Applies `change` to the columns up to `last`.
 #[inline(always)]
-fn each_column<W: Word, const R: usize>(t: &mut Table<W, R>, last: usize, change: impl Fn(usize, &mut [W; R])) {
+pub(super) fn each_column<W: Word, const R: usize>(
+    t: &mut Table<W, R>,
+    last: usize,
+    change: impl Fn(usize, &mut [W; R]),
+) {
     for a in 0..R {
         if a > last {
             return;

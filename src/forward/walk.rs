@@ -4,6 +4,7 @@ use super::Budget;
 use super::form::{Form, Kind};
 use super::kernel::Kernel;
 use super::lanes::{CHUNK, Chunk, LANES, Lanes};
+use super::run::{Buffer, RUN, Run, Runs};
 use super::table::{Table, difference_table, double_steps, step, step_r, step_s};
 use super::tangent::Weights;
 use super::visit::{Fraction, Site, Visit};
@@ -73,6 +74,9 @@ impl<W: Word, const R: usize> Site for At<'_, W, R> {
     }
 }
 
+/// A table, and x and e at the start of its row.
+type Start<'a, W, const R: usize> = (&'a Table<W, R>, i32, W);
+
 /// A walk over a lattice: the engine itself.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Walker<K: Kernel, const R: usize> {
@@ -118,9 +122,26 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
     /// Starts the walk over `form`, whose degrees are below `R`.
     #[inline(never)]
     pub(crate) fn set_up(&mut self, form: &Form<'_>, budget: &Budget) {
+        self.set_up_tables(form, budget);
+        self.start_row::<true>();
+    }
+
+    /// [`set_up`](Self::set_up) for a walk that nobody asks for tangents.
+    #[inline(never)]
+    pub(super) fn set_up_points(&mut self, form: &Form<'_>, budget: &Budget) {
+        self.set_up_tables(form, budget);
+        self.start_row::<false>();
+    }
+
+    #[inline(never)]
+    fn set_up_tables(&mut self, form: &Form<'_>, budget: &Budget) {
         let drop = 16 - budget.fraction_bits;
         for (axis, table) in self.table.iter_mut().enumerate() {
             difference_table(table, form, &|a, b| form.bits(axis, a, b) >> drop);
+            let raise = self.kernel.raise();
+            if raise > 0 {
+                table.as_flattened_mut().iter_mut().for_each(|entry| *entry = *entry << raise);
+            }
         }
         self.scale = K::Word::truncate(budget.scale as i128);
         self.weights = Weights::of(form.degrees);
@@ -128,7 +149,6 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
         self.last_row = form.last_row();
         self.shrinks = form.kind == Kind::Triangle;
         self.place(form, budget);
-        self.start_row::<true>();
     }
 
     /// Sets x and e at the first point.
@@ -296,6 +316,38 @@ impl<K: Kernel, const R: usize> Walker<K, R> {
     /// The points still to come.
     pub(crate) fn remaining(&self) -> u64 {
         remaining(self.position, self.last_in_row, self.last_row, self.shrinks)
+    }
+
+    /// The table of an axis, and x and e at the start of the row as the kernel has them.
+    pub(super) fn start_of(&self, axis: usize) -> Option<Start<'_, K::Word, R>> {
+        Some((self.table.get(axis)?, *self.start.0.get(axis)?, *self.start.1.get(axis)?))
+    }
+}
+
+impl<K: Kernel, const R: usize> Runs for Walker<K, R> {
+    #[inline(never)]
+    fn next_run(&mut self, buffer: &mut Buffer) -> Option<Run> {
+        let (i, j) = self.position;
+        if j > self.last_row {
+            return None;
+        }
+        let left = self.last_in_row - i + 1;
+        let count = left.min(RUN as u32);
+        let row = &mut self.row;
+        for (axis, ((x, e), d)) in row.x.iter_mut().zip(&mut row.e).zip(&mut row.d).enumerate() {
+            if let Some(room) = buffer.axis(axis) {
+                self.kernel.fill(x, e, d, room, count as usize);
+            }
+        }
+        if count < left {
+            self.position.0 += count;
+        } else if j < self.last_row {
+            self.next_row();
+            self.start_row::<false>();
+        } else {
+            self.position.1 += 1;
+        }
+        Some(Run { i, j, stride: 1, count: count as usize })
     }
 }
 

@@ -65,6 +65,9 @@ fn program_is_installed(program: &str) -> bool {
 /// What has the renderer fit the 256 KB of `memory.x`: at level 3 it does not.
 pub(crate) const FOR_SIZE: (&str, &str) = ("CARGO_PROFILE_RELEASE_OPT_LEVEL", "s");
 
+/// The examples that have something of the feature `asm`, built at once so that they share what they are built on.
+pub(crate) const WITH_ASSEMBLY: [&str; 6] = ["--example", "fw_bench", "--example", "fw_forms", "--features", "asm"];
+
 /// Runs `cargo build --release` and returns the folder with the results.
 pub(crate) fn cargo_build(target: &str, what: &[&str]) -> PathBuf {
     cargo("build", target, what, &[])

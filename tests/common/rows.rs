@@ -33,19 +33,20 @@ pub(crate) fn parse(report: &str) -> Vec<Row> {
     report.lines().map(|line| row(line).unwrap_or_else(|| panic!("{line:?} is no row"))).collect()
 }
 
-/// Runs a firmware on some of these targets, with instructions as budgeted under its title. Returns each target's rows by
-/// its short name. `image` is where the image of a target is.
+/// Runs a firmware on some of these targets, with instructions as budgeted under its title in those rows that
+/// `is_budgeted`. Returns each target's rows by its short name. `image` is where the image of a target is.
 pub(crate) fn run_all<P: AsRef<Path>>(
     title: &str,
     targets: &[&str],
     image: impl Fn(&str) -> P,
+    is_budgeted: impl Fn(&Row) -> bool,
 ) -> Vec<(&'static str, Vec<Row>)> {
     let mut columns = Vec::new();
     for (short, target) in COUNTED.into_iter().filter(|(_, target)| targets.contains(target)) {
         let Some(runner) = installed_runner(target) else { continue };
         let rows = parse(&run(&runner, image(target).as_ref()));
-        let measured: Vec<_> =
-            rows.iter().map(|row| (format!("instructions, {}", row.name), row.instructions)).collect();
+        let budgeted = rows.iter().filter(|row| is_budgeted(row));
+        let measured: Vec<_> = budgeted.map(|row| (format!("instructions, {}", row.name), row.instructions)).collect();
         budgets::check(&format!("{title}, {target}"), &measured);
         columns.push((short, rows));
     }
