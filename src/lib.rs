@@ -66,6 +66,8 @@ pub mod forward;
 
 pub mod subdivide;
 
+pub mod intersect;
+
 pub mod render;
 
 #[cfg(feature = "graphics")]

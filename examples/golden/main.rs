@@ -8,6 +8,7 @@ mod case;
 #[path = "../data/draw.rs"]
 mod draw;
 mod field;
+mod intersect;
 mod lattice;
 mod render;
 mod tessellate;
@@ -39,6 +40,8 @@ enum Command {
     Render,
     /// The indexed mesh of patches to a tolerance
     Tessellate,
+    /// The curves in which two patches meet
+    Intersect,
 }
 
 /// A result, or a typed error of the geometry as one.
@@ -56,6 +59,7 @@ fn run_one(command: Command, case: &Field<'_>, output: Option<PathBuf>) -> Answe
         Command::Lattice => lattice::run(case)?,
         Command::Render => render::run(case, output)?,
         Command::Tessellate => tessellate::run(case)?,
+        Command::Intersect => intersect::run(case)?,
     };
     let name = case.get("name").map(|name| ("name".to_owned(), name.value().clone()));
     Ok(name.into_iter().chain(answer).collect())
@@ -89,7 +93,9 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let result = run(&arguments).and_then(|value| {
         let text = value.to_string();
-        if let (Command::Lattice | Command::Tessellate, Some(path)) = (arguments.command, &arguments.output) {
+        if let (Command::Lattice | Command::Tessellate | Command::Intersect, Some(path)) =
+            (arguments.command, &arguments.output)
+        {
             std::fs::write(path, &text).map_err(|e| Malformed::new("-o", &format!("{}: {e}", path.display())))?;
         }
         Ok(text)
