@@ -53,6 +53,15 @@ impl Report {
     }
 }
 
+/// A question about what is known.
+#[derive(Debug)]
+pub(super) enum Query<'q> {
+    /// Whether a contact lies on a curve that was found; it may be followed first.
+    Contact(&'q Contact),
+    /// Whether a curve along which the surfaces touch passes within a distance of a point.
+    Near([i64; 3], Real),
+}
+
 /// What is known of a pair.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Verdict {
@@ -66,16 +75,17 @@ enum Verdict {
 
 struct Search<'s, 'a, F> {
     pair: &'s Pair<'a>,
-    /// Whether a ridge, or an edge on the other surface, that is known runs through a place.
     known: F,
     report: Report,
 }
 
-impl<F: FnMut(&Contact) -> bool> Search<'_, '_, F> {
-    fn judge(&mut self, a: &Part, b: &Part) -> Verdict {
+impl<F: FnMut(Query<'_>) -> bool> Search<'_, '_, F> {
+    fn judge(&mut self, a: &mut Part, b: &mut Part) -> Verdict {
         if !a.boxes_meet(b) {
             return Verdict::Decided;
         }
+        a.aim();
+        b.aim();
         for axis in [a.cone.axis, b.cone.axis] {
             if !axis.is_zero() && a.is_apart_along(b, axis) {
                 return Verdict::Decided;
@@ -91,6 +101,13 @@ impl<F: FnMut(&Contact) -> bool> Search<'_, '_, F> {
         if level >= 4 {
             let near = |f: &Found| f.touches && a.region.holds(f.at[0], 0) && b.region.holds(f.at[1], 0);
             if self.report.list().any(near) {
+                return Verdict::Explained;
+            }
+        }
+        if level >= 6 {
+            let centre = self.pair.sheets[0].eval(a.region.centre(self.pair.sheets[0].triangle), 0);
+            let reach = a.extent().max(b.extent()).shl(1);
+            if centre.is_some_and(|jet| (self.known)(Query::Near(jet.point, reach))) {
                 return Verdict::Explained;
             }
         }
@@ -116,26 +133,26 @@ impl<F: FnMut(&Contact) -> bool> Search<'_, '_, F> {
             }
         }
         let Some(contact) = self.pair.critical(at, size.shl(1)) else { return false };
-        if !self.pair.inside(contact.at, 1 << 20) {
-            return false;
-        }
         let near = a.region.holds(contact.at[0], 1) && b.region.holds(contact.at[1], 1);
         if !near {
             return false;
         }
         let touches = contact.apart.norm() <= self.pair.touching();
-        if touches && (self.known)(&contact) {
+        let inside = self.pair.inside(contact.at, 1 << 20);
+        if touches && inside && (self.known)(Query::Contact(&contact)) {
             return true;
+        }
+        if !inside {
+            return false;
         }
         self.report.enter(Found { at: contact.at, form: contact.form(), touches });
         false
     }
 }
 
-/// Runs the test on at most `budget` pairs. `known` tells whether a touching contact lies on a curve that was found, and may
-/// follow that curve first.
+/// Runs the test on at most `budget` pairs; `known` answers what is known of tangencies.
 #[inline(never)]
-pub(super) fn test(pair: &Pair<'_>, budget: u32, known: impl FnMut(&Contact) -> bool) -> Report {
+pub(super) fn test(pair: &Pair<'_>, budget: u32, known: impl FnMut(Query<'_>) -> bool) -> Report {
     let report = Report { contacts: [None; CONTACTS], count: 0, undecided: 0, visited: 0 };
     let mut search = Search { pair, known, report };
     let mut stack = [[Region::ROOT; 2]; STACK];
@@ -154,7 +171,8 @@ pub(super) fn test(pair: &Pair<'_>, budget: u32, known: impl FnMut(&Contact) -> 
                 parts[s] = Part::new(&pair.sheets[s], regions[s]);
             }
         }
-        match search.judge(&parts[0], &parts[1]) {
+        let [a, b] = &mut parts;
+        match search.judge(a, b) {
             Verdict::Decided => continue,
             Verdict::Explained => {
                 search.report.undecided = search.report.undecided.saturating_add(1);

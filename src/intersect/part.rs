@@ -86,6 +86,7 @@ pub(super) struct Part {
     low: [i64; 3],
     high: [i64; 3],
     pub(super) cone: Cone,
+    is_aimed: bool,
 }
 
 /// Directions of normals about an axis, up to sign.
@@ -217,10 +218,18 @@ impl Part {
             low: [i64::MAX; 3],
             high: [i64::MIN; 3],
             cone: Cone::UNKNOWN,
+            is_aimed: false,
         };
         part.project(&net, sheet);
-        part.cone = part.normals();
         part
+    }
+
+    /// Finds the cone of normals, once.
+    pub(super) fn aim(&mut self) {
+        if !self.is_aimed {
+            self.cone = self.normals();
+            self.is_aimed = true;
+        }
     }
 
     /// Control points to the hull, weights, the box.
@@ -313,7 +322,7 @@ impl Part {
         if length.is_zero() {
             return None;
         }
-        let (mut worst, mut turn) = (Real::ZERO, 0_i64);
+        let (mut worst, mut shortest, mut turn) = (Real::ZERO, Real::power(60), 0_i64);
         self.differences(along, |a, b| turn = turn.max(i64::from((self.weights[a] - self.weights[b]).abs())));
         // Two units of rounding a component, and what the weights' change adds.
         let widening = Real::int(4 + if turn == 0 { 0 } else { 2 * ((radius * turn) >> 24) + 2 });
@@ -322,17 +331,19 @@ impl Part {
         self.differences(along, |a, b| {
             let d = V3::bits([0, 1, 2].map(|k: usize| points[b][k] - points[a][k]), 0);
             let forward = d.dot(axis) * inverse;
-            let aside = (d.square() - forward.square()).max(Real::ZERO).sqrt();
+            let aside = (d.square() - forward.square()).max(Real::ZERO);
             let least = forward - widening;
             if !least.is_positive() {
                 bad = true;
                 return;
             }
-            worst = worst.max((aside + widening) / least);
+            worst = worst.max(aside / least.square());
+            shortest = shortest.min(least);
         });
         if bad {
             return None;
         }
+        let worst = worst.sqrt() + widening / shortest;
         // tan α to 2 sin(α/2) = √(2 − 2 cos α).
         let cosine = Real::ONE / (Real::ONE + worst.square()).sqrt();
         Some((axis * inverse, ((Real::ONE - cosine).shl(1)).max(Real::ZERO).sqrt()))

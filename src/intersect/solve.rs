@@ -1,9 +1,9 @@
 //! From seeds to curves: borders, contacts, arms of branches, and every chain of the mesh that no curve covers yet.
 
-use super::certify::{self, Report};
+use super::certify::{self, Query, Report};
 use super::chain::Chains;
 use super::contact::{Contact, Form};
-use super::curve::{Branch, CurveKind, CurvePoint, End};
+use super::curve::{Branch, Curve, CurveKind, CurvePoint, End};
 use super::grid::Grid;
 use super::hermite::Piece;
 use super::key::{Crossing, Edge, EdgeKind};
@@ -113,6 +113,18 @@ impl Solver<'_, '_, '_> {
             })
     }
 
+    /// Whether a curve of contact passes within a distance of a point.
+    fn touches_near(&self, point: [i64; 3], reach: Real) -> bool {
+        use CurveKind::{EdgeOnSurface, OverlapRegion, SharedEdge, SharedEdgeTangential, Tangential};
+        let kinds = |c: &Curve| match c.kind {
+            Tangential | SharedEdgeTangential | OverlapRegion => true,
+            SharedEdge | EdgeOnSurface => c.min_sine < I2F30::from_bits(1 << 20),
+            _ => false,
+        };
+        let curves = self.out.finished().iter().filter(|c| kinds(c));
+        curves.into_iter().any(|c| on_pieces(self.out.points_of(c), c.closed, point, reach))
+    }
+
     /// Whether a point within a region lies on both surfaces, which are parallel there.
     fn is_coincident(&self, point: [i64; 3], near: usize) -> bool {
         let Some(border) = self.out.points.get(near) else { return false };
@@ -180,7 +192,11 @@ impl Solver<'_, '_, '_> {
     pub(super) fn contacts(&mut self, budget: u32) -> Result<Report, IntersectError> {
         let mut failure = Ok(());
         let pair = self.pair;
-        let report = certify::test(pair, budget, |contact| {
+        let report = certify::test(pair, budget, |query| {
+            let contact = match query {
+                Query::Contact(contact) => contact,
+                Query::Near(point, reach) => return self.touches_near(point, reach),
+            };
             let spot = contact.spot(pair);
             if self.is_covered(spot.point) {
                 return true;

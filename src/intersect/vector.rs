@@ -11,23 +11,24 @@ impl V3 {
     pub(super) const ZERO: Self = Self([Real::ZERO; 3]);
 
     /// Integers in units of 2^`exponent`.
-    #[inline]
+    #[inline(always)]
     pub(super) const fn bits([x, y, z]: [i64; 3], exponent: i32) -> Self {
         Self([Real::new(x, exponent), Real::new(y, exponent), Real::new(z, exponent)])
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn dot(self, other: Self) -> Real {
         let ([a, b, c], [x, y, z]) = (self.0, other.0);
         a * x + b * y + c * z
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn cross(self, other: Self) -> Self {
         let ([a, b, c], [x, y, z]) = (self.0, other.0);
         Self([b * z - c * y, c * x - a * z, a * y - b * x])
     }
 
+    #[inline(always)]
     pub(super) fn square(self) -> Real {
         self.dot(self)
     }
@@ -59,7 +60,7 @@ impl V3 {
 impl Add for V3 {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         let ([a, b, c], [x, y, z]) = (self.0, other.0);
         Self([a + x, b + y, c + z])
@@ -69,7 +70,7 @@ impl Add for V3 {
 impl Sub for V3 {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         let ([a, b, c], [x, y, z]) = (self.0, other.0);
         Self([a - x, b - y, c - z])
@@ -79,17 +80,19 @@ impl Sub for V3 {
 impl Neg for V3 {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
-        Self(self.0.map(|c| -c))
+        let [x, y, z] = self.0;
+        Self([-x, -y, -z])
     }
 }
 
 impl Mul<Real> for V3 {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn mul(self, factor: Real) -> Self {
-        Self(self.0.map(|c| c * factor))
+        let [x, y, z] = self.0;
+        Self([x * factor, y * factor, z * factor])
     }
 }
