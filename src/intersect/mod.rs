@@ -15,7 +15,9 @@ mod hermite;
 mod key;
 mod newton;
 mod part;
+mod plane;
 mod predicate;
+mod probe;
 mod sheet;
 mod solve;
 mod trace;
@@ -25,6 +27,8 @@ pub use curve::{Branch, Curve, CurveKind, CurvePoint, End, Side};
 pub use error::{Buffer, IntersectError};
 pub use fixed::types::{I2F30, I16F48, I20F44};
 pub use grid::{GridBox, GridVertex};
+pub use plane::section;
+pub use probe::{Projection, curve_points, project};
 
 use crate::num::{Coord, Real};
 use crate::patch::SurfaceNet;

@@ -4,12 +4,12 @@ use super::certify::{self, Query, Report};
 use super::chain::Chains;
 use super::contact::{Contact, Form};
 use super::curve::{Branch, Curve, CurveKind, CurvePoint, End};
+use super::descent::{meeting, place_in};
 use super::grid::Grid;
 use super::hermite::Piece;
 use super::key::{Crossing, Edge, EdgeKind};
 use super::newton::{Pair, Places, Spot, difference, moved};
-use super::predicate::{height, normal};
-use super::sheet::ONE;
+use super::predicate::normal;
 use super::trace::{BORDER, Locus, Output, Stop, Tracer};
 use super::vector::V3;
 use super::{Buffer, IntersectError};
@@ -48,26 +48,13 @@ fn begin(grids: [&Grid<'_>; 2], crossing: Crossing) -> (Places, [i64; 3]) {
     let side = usize::from(crossing.side) & 1;
     let (own, other) = (grids[side], grids[1 - side]);
     let [p, q] = crossing.edge.ends().map(|(i, j)| own.vertex(i, j));
-    let corners = crossing.cell.corners();
-    let [a, b, c] = corners.map(|(i, j)| other.vertex(i, j));
-    let exact = normal([a, b, c]);
-    let [from, to] = [p, q].map(|x| Real::wide(height(&exact, a, x), 0));
-    let share = if from == to { Real::power(-1) } else { from / (from - to) };
-    let share = share.max(Real::ZERO).min(Real::ONE);
-    let vector = |x: [i32; 3]| V3::bits(x.map(i64::from), -16);
-    let along = (vector(q) - vector(p)) * share;
-    let x = vector(p) + along - vector(a);
-    let n = V3(exact.map(|c| Real::wide(c, -32)));
-    let inverse = Real::ONE / n.square();
-    let (ab, ac) = (vector(b) - vector(a), vector(c) - vector(a));
-    let clamp = |r: Real| r.max(Real::ZERO).min(Real::ONE);
-    let (beta, gamma) = (clamp(x.cross(ac).dot(n) * inverse), clamp(ab.cross(x).dot(n) * inverse));
-    let place = |grid: &Grid<'_>, (i, j): (usize, usize)| [i, j].map(|k| (k as i64) << (48 - grid.depth));
-    let mix = |at: i64, to: i64, share: Real| (Real::new(to - at, -48) * share).nearest(48);
-    let [ep, eq] = crossing.edge.ends().map(|e| place(own, e));
-    let on_own = [0, 1].map(|k: usize| ep[k] + mix(ep[k], eq[k], share));
-    let [ca, cb, cc] = corners.map(|e| place(other, e));
-    let on_other = [0, 1].map(|k: usize| ca[k] + mix(ca[k], cb[k], beta) + mix(ca[k], cc[k], gamma));
+    let [a, b, c] = crossing.cell.corners().map(|(i, j)| other.vertex(i, j));
+    let (share, weights) = meeting([p, q], [a, b, c], &normal([a, b, c]));
+    let along = (V3::bits(q.map(i64::from), -16) - V3::bits(p.map(i64::from), -16)) * share;
+    let place = |(i, j): (usize, usize)| [i, j].map(|k| (k as i64) << (48 - own.depth));
+    let [from, to] = crossing.edge.ends().map(place);
+    let on_own = [0, 1].map(|k: usize| from[k] + (Real::new(to[k] - from[k], -48) * share).nearest(48));
+    let on_other = place_in(other, crossing.cell, weights);
     let point = moved(p.map(|c| i64::from(c) << 28), along);
     (if side == 0 { [on_own, on_other] } else { [on_other, on_own] }, point)
 }
@@ -413,5 +400,3 @@ impl Solver<'_, '_, '_> {
         Ok(())
     }
 }
-
-const _: () = assert!(ONE == 1 << 48);

@@ -269,10 +269,16 @@ impl Tracer<'_, '_> {
             };
             if !self.pair.inside(q.at, 0) {
                 if let Some(end) = self.leave(&p, &q) {
-                    if difference(end.point, p.point).norm() > shortest.shl(6) {
+                    let moves = difference(end.point, p.point).norm() > shortest.shl(6);
+                    if moves {
                         self.connect(out, &p, &end, true)?;
                     }
-                    return Ok((Stop::Border, end));
+                    if moves || steps > 0 || h < shortest.shl(8) {
+                        return Ok((Stop::Border, end));
+                    }
+                    // The border where the curve began: it leaves again within the step.
+                    h = h.shl(-1);
+                    continue;
                 }
                 if self.pair.inside(p.at, 4) || h > shortest.shl(8) {
                     h = h.shl(-1);
@@ -303,6 +309,10 @@ impl Tracer<'_, '_> {
                     let allowed = self.tolerance.shl(-1);
                     if error > allowed {
                         h = h.shl(-1);
+                        if h.shl(1) < one {
+                            // What is behind was judged already: from here the next piece is judged alone.
+                            before = None;
+                        }
                         continue;
                     }
                     out.emit(&q)?;
