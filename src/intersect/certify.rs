@@ -145,7 +145,9 @@ impl<F: FnMut(Query<'_>) -> bool> Search<'_, '_, F> {
         if !inside {
             return false;
         }
-        self.report.enter(Found { at: contact.at, form: contact.form(), touches });
+        if !self.report.enter(Found { at: contact.at, form: contact.form(), touches }) {
+            self.report.undecided = self.report.undecided.saturating_add(1);
+        }
         false
     }
 }

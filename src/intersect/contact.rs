@@ -162,8 +162,8 @@ impl Pair<'_> {
         let mut travelled = Real::ZERO;
         for _ in 0..LIMIT {
             let reach = contact.reach();
-            if reach <= self.extent.shl(-38) {
-                return Some(contact);
+            if reach <= self.extent.shl(-30) {
+                return Contact::new(self, contact.stepped(contact.steps));
             }
             travelled = travelled + reach;
             if travelled > within {

@@ -230,8 +230,15 @@ fn collect(pair: &Pair<'_>, grids: [&Grid<'_>; 2], sizes: [i64; 2], (side, edge)
         }
         k += 1;
         let range = [low, high].map(|s| sheet.edge_parameter(edge, s.at[side]));
-        // An edge that passes through the surface meets it in a point, not in a part.
-        if range[1] - range[0] <= ONE >> 20 {
+        // An edge that passes through the surface, or touches it, meets it in a point, not in a part: there, the distance
+        // grows from nothing to the tolerance, quickly.
+        let long = range[1] - range[0];
+        let firm = |t: i64| {
+            let near = super::trace::middle_place(low.at[other], high.at[other]);
+            let spot = pair.on_surface(side, edge, t, near, BORDER);
+            spot.is_some_and(|s| s.residual <= pair.touching().shl(-4))
+        };
+        if long < ONE && (long <= ONE >> 20 || !firm(range[0] + long / 8) || !firm(range[1] - long / 8)) {
             continue;
         }
         let middle = (range[0] + range[1]) / 2;

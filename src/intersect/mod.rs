@@ -286,6 +286,7 @@ fn in_order<'b>(
     solver.chains(grids, &mut chains)?;
     if let Some(report) = &report {
         solver.around(report)?;
+        solver.leftovers(report)?;
     }
     let undecided = solver.undecided.max(u32::from(edges.overlap));
     let Output { points, used, curves, curve_count, branches, branch_count, .. } = solver.out;

@@ -152,10 +152,9 @@ impl Solver<'_, '_, '_> {
         let tracer = |forward| Tracer { pair, locus, forward, tolerance: self.tolerance };
         let (one, two) = (tracer(true), tracer(false));
         if !forward && !backward {
-            self.out.emit(&Spot { tangent: V3::ZERO, ..seed })?;
-            return self.out.finish(CurveKind::TangentPoint, false, [End::None; 2], first);
+            return self.touch(&seed);
         }
-        let (walker, start, other) = if forward { (one, ahead, two) } else { (two, behind, one) };
+        let (walker, start, back) = if forward { (one, ahead, behind) } else { (two, behind, ahead) };
         self.out.emit(&start)?;
         let (stop, spot) = walker.walk(&mut self.out, start, Some(&start))?;
         if stop == Stop::Closed {
@@ -170,7 +169,12 @@ impl Solver<'_, '_, '_> {
             points.reverse();
             points.iter_mut().for_each(|p| *p = p.turned());
         }
-        let (stop, spot) = other.walk(&mut self.out, behind, None)?;
+        // A closed curve that was lost comes back to where that was.
+        let lost = (stop == Stop::Lost).then(|| spot.oriented(false));
+        let (stop, spot) = if forward { &two } else { &one }.walk(&mut self.out, back, lost.as_ref())?;
+        if stop == Stop::Closed {
+            return self.out.finish(closed, true, [End::None; 2], first);
+        }
         let end = self.stop(stop, &spot);
         self.out.finish(open, false, [last, end], first)
     }
@@ -214,15 +218,31 @@ impl Solver<'_, '_, '_> {
             }
             match found.form {
                 Form::Saddle => self.branch(&contact)?,
-                Form::Definite | Form::Ridge | Form::Flat => {
-                    let first = self.out.used;
-                    self.undecided += u32::from(found.form != Form::Definite);
-                    self.out.emit(&Spot { tangent: V3::ZERO, ..spot })?;
-                    self.out.finish(CurveKind::TangentPoint, false, [End::None; 2], first)?;
-                }
+                Form::Definite => self.touch(&spot)?,
+                Form::Ridge | Form::Flat => self.undecided += 1,
             }
         }
         Ok(report)
+    }
+
+    /// Enters a touching point.
+    fn touch(&mut self, spot: &Spot) -> Result<(), IntersectError> {
+        let first = self.out.used;
+        self.out.emit(&Spot { tangent: V3::ZERO, ..*spot })?;
+        self.out.finish(CurveKind::TangentPoint, false, [End::None; 2], first)
+    }
+
+    /// Enters contacts of a higher order that no curve reached: touching points, as far as can be told.
+    pub(super) fn leftovers(&mut self, report: &Report) -> Result<(), IntersectError> {
+        for found in report.list().filter(|f| f.touches && matches!(f.form, Form::Ridge | Form::Flat)) {
+            let Some(contact) = Contact::new(self.pair, found.at) else { continue };
+            let (spot, slack) = (contact.spot(self.pair), self.cell.shl(-1));
+            let near = |c: &Curve| on_pieces(self.out.points_of(c), c.closed, spot.point, slack);
+            if !self.out.finished().iter().any(near) {
+                self.touch(&spot)?;
+            }
+        }
+        Ok(())
     }
 
     fn cell_bits(&self) -> fixed::types::I20F44 {

@@ -270,13 +270,11 @@ impl Tracer<'_, '_> {
             if !self.pair.inside(q.at, 0) {
                 if let Some(end) = self.leave(&p, &q) {
                     let moves = difference(end.point, p.point).norm() > shortest.shl(6);
-                    if moves {
-                        self.connect(out, &p, &end, true)?;
-                    }
-                    if moves || steps > 0 || h < shortest.shl(8) {
+                    let small = h < shortest.shl(8);
+                    // Without a move it is the border where the curve began: it leaves again within the step.
+                    if if moves { self.join(out, &p, &end, true)? || small } else { steps > 0 || small } {
                         return Ok((Stop::Border, end));
                     }
-                    // The border where the curve began: it leaves again within the step.
                     h = h.shl(-1);
                     continue;
                 }
