@@ -8,6 +8,7 @@ mod forward;
 mod geometry;
 #[cfg(feature = "graphics")]
 mod graphics;
+mod intersect;
 mod num;
 mod patch;
 mod render;
@@ -37,6 +38,7 @@ pub(crate) const MODULES: &[Module] = &[
     ("forward", forward::calls),
     ("subdivide", subdivide::calls),
     ("subdivide, meshes", subdivide::mesh::calls),
+    ("intersect", intersect::calls),
     ("render", render::calls),
     ("render, grid", render::grid::calls),
     #[cfg(feature = "graphics")]

@@ -14,7 +14,7 @@ use crate::num::Real;
 const DEEPEST: u8 = 11;
 const STACK: usize = 3 * 2 * DEEPEST as usize + 2;
 /// Points with collinear normals that are kept.
-pub(super) const CONTACTS: usize = 40;
+pub(super) const CONTACTS: usize = 24;
 
 /// A point with collinear normals.
 #[derive(Clone, Copy, Debug)]
@@ -80,7 +80,8 @@ struct Search<'s, 'a, F> {
 }
 
 impl<F: FnMut(Query<'_>) -> bool> Search<'_, '_, F> {
-    fn judge(&mut self, a: &mut Part, b: &mut Part) -> Verdict {
+    fn judge(&mut self, a: &mut Part, b: &mut Part, regions: [Region; 2]) -> Verdict {
+        let [over_a, over_b] = regions;
         if !a.boxes_meet(b) {
             return Verdict::Decided;
         }
@@ -97,34 +98,34 @@ impl<F: FnMut(Query<'_>) -> bool> Search<'_, '_, F> {
         if a.cone.is_apart(&b.cone) {
             return Verdict::Decided;
         }
-        let level = a.region.level.min(b.region.level);
+        let level = over_a.level.min(over_b.level);
         if level >= 4 {
-            let near = |f: &Found| f.touches && a.region.holds(f.at[0], 0) && b.region.holds(f.at[1], 0);
+            let near = |f: &Found| f.touches && over_a.holds(f.at[0], 0) && over_b.holds(f.at[1], 0);
             if self.report.list().any(near) {
                 return Verdict::Explained;
             }
         }
         if level >= 6 {
-            let centre = self.pair.sheets[0].eval(a.region.centre(self.pair.sheets[0].triangle), 0);
+            let centre = self.pair.sheets[0].eval(over_a.centre(self.pair.sheets[0].triangle), 0);
             let reach = a.extent().max(b.extent()).shl(1);
             if centre.is_some_and(|jet| (self.known)(Query::Near(jet.point, reach))) {
                 return Verdict::Explained;
             }
         }
         let flat = Real::new(7, -4);
-        if a.cone.sine < flat && b.cone.sine < flat && self.search(a, b) {
+        if a.cone.sine < flat && b.cone.sine < flat && self.search(a, b, regions) {
             return Verdict::Explained;
         }
         Verdict::Open
     }
 
     /// Looks for a point with collinear normals near a pair; true if it lies on a curve that is known.
-    fn search(&mut self, a: &Part, b: &Part) -> bool {
-        let known = |f: &Found| a.region.holds(f.at[0], 1) && b.region.holds(f.at[1], 1);
+    fn search(&mut self, a: &Part, b: &Part, [over_a, over_b]: [Region; 2]) -> bool {
+        let known = |f: &Found| over_a.holds(f.at[0], 1) && over_b.holds(f.at[1], 1);
         if self.report.list().any(known) {
             return false;
         }
-        let mut at = [a.region.centre(self.pair.sheets[0].triangle), b.region.centre(self.pair.sheets[1].triangle)];
+        let mut at = [over_a.centre(self.pair.sheets[0].triangle), over_b.centre(self.pair.sheets[1].triangle)];
         let size = a.extent().min(b.extent());
         // B's foot under A's centre, before anything is judged.
         if let Some(jet) = self.pair.sheets[0].eval(at[0], 0) {
@@ -133,7 +134,7 @@ impl<F: FnMut(Query<'_>) -> bool> Search<'_, '_, F> {
             }
         }
         let Some(contact) = self.pair.critical(at, size.shl(1)) else { return false };
-        let near = a.region.holds(contact.at[0], 1) && b.region.holds(contact.at[1], 1);
+        let near = over_a.holds(contact.at[0], 1) && over_b.holds(contact.at[1], 1);
         if !near {
             return false;
         }
@@ -145,7 +146,8 @@ impl<F: FnMut(Query<'_>) -> bool> Search<'_, '_, F> {
         if !inside {
             return false;
         }
-        if !self.report.enter(Found { at: contact.at, form: contact.form(), touches }) {
+        // Those at a distance are hints where small curves may be; the pair itself is halved on.
+        if !self.report.enter(Found { at: contact.at, form: contact.form(), touches }) && touches {
             self.report.undecided = self.report.undecided.saturating_add(1);
         }
         false
@@ -159,7 +161,7 @@ pub(super) fn test(pair: &Pair<'_>, budget: u32, known: impl FnMut(Query<'_>) ->
     let mut search = Search { pair, known, report };
     let mut stack = [[Region::ROOT; 2]; STACK];
     let mut height = 1;
-    let mut parts = [0, 1].map(|s: usize| Part::new(&pair.sheets[s], Region::ROOT));
+    let mut parts = [Part::BLANK; 2];
     while height > 0 {
         height -= 1;
         let Some(regions) = stack.get(height).copied() else { break };
@@ -168,13 +170,13 @@ pub(super) fn test(pair: &Pair<'_>, budget: u32, known: impl FnMut(Query<'_>) ->
             break;
         }
         search.report.visited += 1;
-        for s in 0..2 {
-            if parts[s].region != regions[s] {
-                parts[s] = Part::new(&pair.sheets[s], regions[s]);
+        for ((part, region), sheet) in parts.iter_mut().zip(regions).zip(&pair.sheets) {
+            if part.region != Some(region) {
+                part.load(sheet, region);
             }
         }
         let [a, b] = &mut parts;
-        match search.judge(a, b) {
+        match search.judge(a, b, regions) {
             Verdict::Decided => continue,
             Verdict::Explained => {
                 search.report.undecided = search.report.undecided.saturating_add(1);

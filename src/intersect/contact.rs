@@ -54,7 +54,7 @@ type Symmetric = [Real; 3];
 /// The Hessian of a surface as a height along `normal` over the plane of the axes, whose slope is `slope`.
 fn hessian(jet: &Jet, normal: V3, axes: &[V3; 2], slope: V3) -> Symmetric {
     let own = jet.normal();
-    let [e, f] = [0, 1].map(|k: usize| pull_back(&jet.first, own, axes[k]));
+    let [e, f] = both!(|k| pull_back(&jet.first, own, axes[k]));
     // Second derivatives along the normal, less what the slope explains.
     let [uu, uv, vv] = jet.second.map(|d| d.dot(normal) - d.dot(slope));
     let form = |a: &[Real; 2], b: &[Real; 2]| uu * a[0] * b[0] + uv * (a[0] * b[1] + a[1] * b[0]) + vv * a[1] * b[1];
@@ -84,10 +84,10 @@ impl Contact {
         let gap = -apart.dot(n);
         let beside = -apart - n * gap;
         let inverse = Real::ONE / steep;
-        let slope = [0, 1].map(|k: usize| -(own.dot(plane[k]) * inverse));
+        let slope = both!(|k| -(own.dot(plane[k]) * inverse));
         let of_a = hessian(&jets[0], n, &plane, plane[0] * slope[0] + plane[1] * slope[1]);
         let of_b = hessian(&jets[1], n, &plane, V3::ZERO);
-        let h: Symmetric = [0, 1, 2].map(|k: usize| of_a[k] - of_b[k]);
+        let h: Symmetric = three!(|k| of_a[k] - of_b[k]);
         let scale = size(of_a).max(size(of_b)).max(Real::power(-3) / pair.extent);
         // Eigenvalues and axes.
         let (mean, half) = ((h[0] + h[2]).shl(-1), (h[0] - h[2]).shl(-1));
@@ -100,11 +100,11 @@ impl Contact {
         let axis = if axis.is_zero() { plane[0] } else { axis.unit() };
         let axes = [axis, n.cross(axis)];
         // H x = HB·beside − p.
-        let [x, y] = [0, 1].map(|k: usize| beside.dot(plane[k]));
+        let [x, y] = both!(|k| beside.dot(plane[k]));
         let right =
             plane[0] * (of_b[0] * x + of_b[1] * y - slope[0]) + plane[1] * (of_b[1] * x + of_b[2] * y - slope[1]);
         let curvatures = [first, last];
-        let steps = [0, 1].map(|k: usize| {
+        let steps = both!(|k| {
             let level = curvatures[k].abs() <= scale.shl(-14);
             if level { Real::ZERO } else { right.dot(axes[k]) / curvatures[k] }
         });
@@ -144,13 +144,13 @@ impl Contact {
     pub(super) fn spot(&self, pair: &Pair<'_>) -> Spot {
         let mut spot = pair.spot(self.at, &self.jets);
         spot.tangent = self.axes[1];
-        spot.rates = [0, 1].map(|s: usize| pull_back(&self.jets[s].first, self.jets[s].normal(), spot.tangent));
+        spot.rates = both!(|s| pull_back(&self.jets[s].first, self.jets[s].normal(), spot.tangent));
         spot
     }
 
     /// Parameters of a patch a unit along a direction.
     pub(super) fn rates(&self, direction: V3) -> [[Real; 2]; 2] {
-        [0, 1].map(|s: usize| pull_back(&self.jets[s].first, self.jets[s].normal(), direction))
+        both!(|s| pull_back(&self.jets[s].first, self.jets[s].normal(), direction))
     }
 }
 
@@ -201,6 +201,6 @@ impl Pair<'_> {
 
     /// A place of one patch near a point of it that was followed along a direction.
     pub(super) fn followed(at: Places, rates: &[[Real; 2]; 2], by: Real) -> [Place; 2] {
-        [0, 1].map(|s: usize| shifted(at[s], rates[s].map(|r| r * by)))
+        both!(|s| shifted(at[s], rates[s].map(|r| r * by)))
     }
 }

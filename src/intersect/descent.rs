@@ -60,11 +60,11 @@ pub(super) fn descend(
         if found.visited > budget {
             return Err(IntersectError::PairBudget { visited: budget, level: pair[0].level.max(pair[1].level) });
         }
-        let boxes = [0, 1].map(|s: usize| grids[s].bounds(pair[s].level.into(), pair[s].i.into(), pair[s].j.into()));
+        let boxes = both!(|s| grids[s].bounds(pair[s].level.into(), pair[s].i.into(), pair[s].j.into()));
         if !meet(&boxes[0], &boxes[1]) {
             continue;
         }
-        let leaf = [0, 1].map(|s: usize| u32::from(pair[s].level) == grids[s].depth);
+        let leaf = both!(|s| u32::from(pair[s].level) == grids[s].depth);
         if leaf[0] && leaf[1] {
             cells(grids, pair, &mut perturbation, &mut found, records)?;
             continue;
@@ -117,7 +117,7 @@ fn cells(
     found: &mut Found,
     records: &mut [u64],
 ) -> Result<(), IntersectError> {
-    let [of_a, of_b] = [0, 1].map(|s: usize| facets(grids[s], pair[s], found));
+    let [of_a, of_b] = both!(|s| facets(grids[s], pair[s], found));
     for a in of_a.iter().flatten() {
         for b in of_b.iter().flatten() {
             let mut crossings = [None; 2];
@@ -236,6 +236,6 @@ pub(super) fn meeting([p, q]: [GridVertex; 2], [a, b, c]: [GridVertex; 3], exact
 pub(super) fn place_in(grid: &Grid<'_>, cell: Cell, [beta, gamma]: [Real; 2]) -> Place {
     let [a, b, c] = cell.corners().map(|(i, j)| [i, j].map(|k| (k as i64) << (48 - grid.depth)));
     let mix = |from: i64, to: i64, share: Real| (Real::new(to - from, -48) * share).nearest(48);
-    let [u, v] = [0, 1].map(|k: usize| a[k] + mix(a[k], b[k], beta) + mix(a[k], c[k], gamma));
+    let [u, v] = both!(|k| a[k] + mix(a[k], b[k], beta) + mix(a[k], c[k], gamma));
     [u, v]
 }

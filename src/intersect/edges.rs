@@ -20,7 +20,7 @@ const SAMPLES: i64 = 8;
 /// A vertex of 2^this cells a side is where a foot is searched from.
 const COARSE: u32 = 3;
 /// Parts of edges on a surface that are kept at most: 7 or 8 edges, a few parts each.
-const MOST: usize = 24;
+const MOST: usize = 12;
 /// The largest sine of an angle that counts as none along a curve.
 const PARALLEL: Real = Real::power(-17);
 
@@ -286,7 +286,7 @@ impl Pair<'_> {
         let mut spot = self.spot(at, &jets);
         let [a, b] = self.sheets[side].edge_direction(edge).map(Real::int);
         spot.tangent = (jets[side].first[0] * a + jets[side].first[1] * b).unit();
-        spot.rates = [0, 1].map(|s: usize| super::newton::pull_back(&jets[s].first, jets[s].normal(), spot.tangent));
+        spot.rates = both!(|s| super::newton::pull_back(&jets[s].first, jets[s].normal(), spot.tangent));
         Some(spot)
     }
 }
@@ -390,9 +390,15 @@ fn shortened(pair: &Pair<'_>, part: &OnSurface, backwards: bool) -> OnSurface {
 
 /// Whether points amid a closed border lie on both surfaces.
 fn encloses(pair: &Pair<'_>, border: &[CurvePoint]) -> bool {
-    let count = border.len().max(1) as i64;
-    let mean = |side: usize, k: usize| border.iter().map(|p| p.places()[side][k] / count).sum::<i64>();
-    let centre: [Place; 2] = [0, 1].map(|s: usize| [mean(s, 0), mean(s, 1)]);
+    let share = Real::ONE / Real::int(border.len().max(1) as i64);
+    let mut sums = [Real::ZERO; 4];
+    for p in border {
+        for (sum, c) in sums.iter_mut().zip(p.places().as_flattened()) {
+            *sum = *sum + Real::new(*c, -48);
+        }
+    }
+    let [u, v, s, t] = sums.map(|sum| (sum * share).nearest(48));
+    let centre: [Place; 2] = [[u, v], [s, t]];
     let coincide = |place: Place, near: Place| {
         let Some(jet) = pair.sheets[0].eval(place, 1) else { return false };
         let Some((_, under)) = pair.foot(1, near, jet.point) else { return false };
@@ -402,7 +408,7 @@ fn encloses(pair: &Pair<'_>, border: &[CurvePoint]) -> bool {
     let towards = (0..4).filter_map(|k| border.get(border.len() * k / 4)).map(|p| p.places());
     coincide(centre[0], centre[1])
         && towards.into_iter().all(|p| {
-            let [a, b] = [0, 1].map(|s: usize| super::trace::middle_place(centre[s], p[s]));
+            let [a, b] = both!(|s| super::trace::middle_place(centre[s], p[s]));
             coincide(a, b)
         })
 }

@@ -7,6 +7,7 @@
 use super::sheet::{Jet, ONE, POINT_BITS, Place, Sheet};
 use super::vector::V3;
 use crate::num::Real;
+use crate::patch::SurfaceNet;
 
 /// Parameters are in units of 2^-48.
 use super::sheet::PARAMETER_BITS;
@@ -44,17 +45,17 @@ pub(super) struct Pair<'a> {
 }
 
 pub(super) fn difference(a: [i64; 3], b: [i64; 3]) -> V3 {
-    V3::bits([0, 1, 2].map(|k: usize| a[k].wrapping_sub(b[k])), -POINT_BITS)
+    V3::bits(three!(|k| a[k].wrapping_sub(b[k])), -POINT_BITS)
 }
 
 /// `point` + `move`, both in space.
 pub(super) fn moved(point: [i64; 3], by: V3) -> [i64; 3] {
     let by = by.fixed(POINT_BITS);
-    [0, 1, 2].map(|k: usize| point[k].wrapping_add(by[k]))
+    three!(|k| point[k].wrapping_add(by[k]))
 }
 
 pub(super) fn middle(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
-    [0, 1, 2].map(|k: usize| (a[k] >> 1).wrapping_add(b[k] >> 1).wrapping_add(a[k] & b[k] & 1))
+    three!(|k| (a[k] >> 1).wrapping_add(b[k] >> 1).wrapping_add(a[k] & b[k] & 1))
 }
 
 /// The parameters' move whose image under the derivatives is nearest to `by`; the normal is Su × Sv.
@@ -74,9 +75,11 @@ pub(super) fn shifted(place: Place, by: [Real; 2]) -> Place {
 }
 
 impl<'a> Pair<'a> {
-    pub(super) fn new(sheets: [Sheet<'a>; 2]) -> Self {
-        let extent = sheets[0].extent.max(sheets[1].extent);
-        Self { sheets, accept: Real::power(-36).max(extent.shl(-46)), extent }
+    pub(super) fn new([a, b]: [SurfaceNet<'a>; 2]) -> Self {
+        let mut pair = Self { sheets: [Sheet::new(a), Sheet::new(b)], accept: Real::ZERO, extent: Real::ZERO };
+        pair.extent = pair.sheets[0].extent.max(pair.sheets[1].extent);
+        pair.accept = Real::power(-36).max(pair.extent.shl(-46));
+        pair
     }
 
     /// Jets at places, up to an order of derivatives.
@@ -92,7 +95,7 @@ impl<'a> Pair<'a> {
         let lengths = normals[0].square() * normals[1].square();
         let sine = (square / lengths).sqrt();
         let tangent = product * (Real::ONE / square.sqrt());
-        let rates = [0, 1].map(|s: usize| pull_back(&jets[s].first, normals[s], tangent));
+        let rates = both!(|s| pull_back(&jets[s].first, normals[s], tangent));
         let point = middle(jets[0].point, jets[1].point);
         Spot { at, point, tangent, rates, sine, residual: difference(jets[1].point, jets[0].point).norm() }
     }
@@ -117,7 +120,7 @@ impl<'a> Pair<'a> {
             }
             let delta = (plane.cross(normals[0]) * normals[1].dot(r) + tangent * off) * (Real::ONE / across);
             let moves = [delta, delta - r];
-            at = [0, 1].map(|s: usize| shifted(at[s], pull_back(&jets[s].first, normals[s], moves[s])));
+            at = both!(|s| shifted(at[s], pull_back(&jets[s].first, normals[s], moves[s])));
         }
         None
     }
@@ -164,7 +167,7 @@ impl<'a> Pair<'a> {
             let jet = sheet.eval(place, 1)?;
             let step = pull_back(&jet.first, jet.normal(), difference(c, jet.point));
             let next = shifted(place, step);
-            let size = [0, 1].map(|k: usize| (next[k] - place[k]).abs());
+            let size = both!(|k| (next[k] - place[k]).abs());
             if size[0].max(size[1]) <= 2 {
                 return Some((place, jet));
             }

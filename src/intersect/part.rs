@@ -76,7 +76,7 @@ impl Region {
 /// A part of a patch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
-    pub(super) region: Region,
+    pub(super) region: Option<Region>,
     triangle: bool,
     degrees: (usize, usize),
     count: usize,
@@ -173,9 +173,23 @@ fn triangle_blossom(net: &[Homogeneous; ROOM], n: usize, corners: &[Place; 3], c
 }
 
 impl Part {
-    /// The part of a patch over a region.
+    /// No part.
+    pub(super) const BLANK: Self = Self {
+        region: None,
+        triangle: false,
+        degrees: (1, 1),
+        count: 0,
+        hull: [[0; 3]; ROOM],
+        weights: [0; ROOM],
+        low: [0; 3],
+        high: [0; 3],
+        cone: Cone::UNKNOWN,
+        is_aimed: false,
+    };
+
+    /// Becomes the part of a patch over a region.
     #[inline(never)]
-    pub(super) fn new(sheet: &Sheet<'_>, region: Region) -> Self {
+    pub(super) fn load(&mut self, sheet: &Sheet<'_>, region: Region) {
         let mut net = [[0; 4]; ROOM];
         let (m, h) = (sheet.degrees.0.min(MAX_DEGREE), sheet.degrees.1.min(MAX_DEGREE));
         let count = if sheet.triangle { triangle_len(m) } else { (m + 1) * (h + 1) };
@@ -208,20 +222,12 @@ impl Part {
                 }
             }
         }
-        let mut part = Self {
-            region,
-            triangle: sheet.triangle,
-            degrees: (m, h),
-            count,
-            hull: [[0; 3]; ROOM],
-            weights: [1 << 24; ROOM],
-            low: [i64::MAX; 3],
-            high: [i64::MIN; 3],
-            cone: Cone::UNKNOWN,
-            is_aimed: false,
-        };
-        part.project(&net, sheet);
-        part
+        self.region = Some(region);
+        (self.triangle, self.degrees, self.count) = (sheet.triangle, (m, h), count);
+        self.weights = [1 << 24; ROOM];
+        (self.low, self.high) = ([i64::MAX; 3], [i64::MIN; 3]);
+        self.is_aimed = false;
+        self.project(&net, sheet);
     }
 
     /// Finds the cone of normals, once.
@@ -288,7 +294,7 @@ impl Part {
 
     /// The cone of normals.
     fn normals(&self) -> Cone {
-        let middle = [0, 1, 2].map(|k: usize| (self.low[k] >> 1) + (self.high[k] >> 1));
+        let middle = three!(|k| (self.low[k] >> 1) + (self.high[k] >> 1));
         // Weighted control points about the middle with at most 29 bits.
         let size = self.size().max(1);
         let shift = (64 - size.leading_zeros() as i32 - 28).max(0);
@@ -329,7 +335,7 @@ impl Part {
         let inverse = Real::ONE / length.sqrt();
         let mut bad = false;
         self.differences(along, |a, b| {
-            let d = V3::bits([0, 1, 2].map(|k: usize| points[b][k] - points[a][k]), 0);
+            let d = V3::bits(three!(|k| points[b][k] - points[a][k]), 0);
             let forward = d.dot(axis) * inverse;
             let aside = (d.square() - forward.square()).max(Real::ZERO);
             let least = forward - widening;

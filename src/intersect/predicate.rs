@@ -21,7 +21,7 @@ pub(super) struct Perturbation {
 
 #[inline(always)]
 fn minus(a: GridVertex, b: GridVertex) -> [i64; 3] {
-    [0, 1, 2].map(|k: usize| i64::from(a[k]) - i64::from(b[k]))
+    three!(|k| i64::from(a[k]) - i64::from(b[k]))
 }
 
 #[inline(always)]

@@ -195,7 +195,7 @@ pub fn curve_points(
     }
     let count = 2 * curve.points().len();
     let ruled = TensorNet::of_checked((curve.degree(), 1), points.get(..count).unwrap_or(&points));
-    let pair = Pair::new([Sheet::new(SurfaceNet::Tensor(ruled)), Sheet::new(net)]);
+    let pair = Pair::new([SurfaceNet::Tensor(ruled), net]);
     let steps = 1_i64 << depth;
     let mut used = 0;
     let point_at = |k: i64| {

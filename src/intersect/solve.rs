@@ -53,7 +53,7 @@ fn begin(grids: [&Grid<'_>; 2], crossing: Crossing) -> (Places, [i64; 3]) {
     let along = (V3::bits(q.map(i64::from), -16) - V3::bits(p.map(i64::from), -16)) * share;
     let place = |(i, j): (usize, usize)| [i, j].map(|k| (k as i64) << (48 - own.depth));
     let [from, to] = crossing.edge.ends().map(place);
-    let on_own = [0, 1].map(|k: usize| from[k] + (Real::new(to[k] - from[k], -48) * share).nearest(48));
+    let on_own = both!(|k| from[k] + (Real::new(to[k] - from[k], -48) * share).nearest(48));
     let on_other = place_in(other, crossing.cell, weights);
     let point = moved(p.map(|c| i64::from(c) << 28), along);
     (if side == 0 { [on_own, on_other] } else { [on_other, on_own] }, point)
@@ -115,7 +115,7 @@ impl Solver<'_, '_, '_> {
     /// Whether a point within a region lies on both surfaces, which are parallel there.
     fn is_coincident(&self, point: [i64; 3], near: usize) -> bool {
         let Some(border) = self.out.points.get(near) else { return false };
-        let feet = [0, 1].map(|s: usize| self.pair.foot(s, border.places()[s], point));
+        let feet = both!(|s| self.pair.foot(s, border.places()[s], point));
         let [Some((_, a)), Some((_, b))] = feet else { return false };
         let cosine = a.normal().unit().dot(b.normal().unit()).abs();
         cosine > Real::ONE - Real::power(-10)

@@ -116,12 +116,12 @@ impl Tracer<'_, '_> {
         if let Locus::Edge { side, edge } = self.locus {
             let sheet = &self.pair.sheets[side & 1];
             let [a, b] = [p, q].map(|s| sheet.edge_parameter(edge, s.at[side & 1]));
-            let near = [0, 1].map(|k: usize| middle_place(p.at[1 - (side & 1)], q.at[1 - (side & 1)])[k]);
+            let near = both!(|k| middle_place(p.at[1 - (side & 1)], q.at[1 - (side & 1)])[k]);
             return Some(self.pair.edge_spot(side, edge, (a + b) >> 1, near)?.along(difference(q.point, p.point)));
         }
         let eighth = piece.arc().shl(-3);
-        let at = [0, 1].map(|s: usize| {
-            let bend = [0, 1].map(|k: usize| (p.rates[s][k] - q.rates[s][k]) * eighth);
+        let at = both!(|s| {
+            let bend = both!(|k| (p.rates[s][k] - q.rates[s][k]) * eighth);
             shifted(middle_place(p.at[s], q.at[s]), bend)
         });
         let chord = difference(q.point, p.point);
@@ -172,8 +172,7 @@ impl Tracer<'_, '_> {
             // The rates' own rate of change carries on.
             let gone = difference(p.point, before.point).norm();
             let factor = h.square() / gone.shl(1);
-            at = [0, 1]
-                .map(|s: usize| shifted(at[s], [0, 1].map(|k: usize| (p.rates[s][k] - before.rates[s][k]) * factor)));
+            at = both!(|s| shifted(at[s], both!(|k| (p.rates[s][k] - before.rates[s][k]) * factor)));
         }
         let q = self.solve(at, moved(p.point, p.tangent * h), p.tangent)?;
         let chord = difference(q.point, p.point);
@@ -342,8 +341,8 @@ impl Tracer<'_, '_> {
                     continue;
                 }
                 let share = Real::int(from.max(0)) / Real::int(from.max(0) - to);
-                let at = [0, 1].map(|s: usize| {
-                    let step = [0, 1].map(|k: usize| Real::new(q.at[s][k] - p.at[s][k], -48) * share);
+                let at = both!(|s| {
+                    let step = both!(|k| Real::new(q.at[s][k] - p.at[s][k], -48) * share);
                     shifted(p.at[s], step)
                 });
                 let found = match self.locus {
@@ -373,9 +372,7 @@ impl Tracer<'_, '_> {
             }
             let share = (a / (a - b)).max(Real::power(-6)).min(Real::ONE - Real::power(-6));
             let chord = difference(high.point, low.point);
-            let at = [0, 1].map(|s: usize| {
-                shifted(low.at[s], [0, 1].map(|k: usize| Real::new(high.at[s][k] - low.at[s][k], -48) * share))
-            });
+            let at = both!(|s| shifted(low.at[s], both!(|k| Real::new(high.at[s][k] - low.at[s][k], -48) * share)));
             let spot = self.solve(at, moved(low.point, chord * share), p.tangent)?;
             let inset = sheet.inset(edge, spot.at[side]);
             if inset.abs() <= 4 {
@@ -400,7 +397,7 @@ impl Pair<'_> {
         let (at, jets) = if one == 0 { ([place, foot], [jet, under]) } else { ([foot, place], [under, jet]) };
         let mut spot = self.spot(at, &jets);
         spot.tangent = (jet.first[0] * a + jet.first[1] * b).unit();
-        spot.rates = [0, 1].map(|s: usize| super::newton::pull_back(&jets[s].first, jets[s].normal(), spot.tangent));
+        spot.rates = both!(|s| super::newton::pull_back(&jets[s].first, jets[s].normal(), spot.tangent));
         Some(spot)
     }
 
@@ -423,6 +420,6 @@ impl Pair<'_> {
 }
 
 pub(super) fn middle_place(a: Place, b: Place) -> Place {
-    let [u, v] = [0, 1].map(|k: usize| (a[k] + b[k]) >> 1);
+    let [u, v] = both!(|k| (a[k] + b[k]) >> 1);
     [u, v]
 }
