@@ -128,10 +128,9 @@ impl<F: FnMut(Query<'_>) -> bool> Search<'_, '_, F> {
         let mut at = [over_a.centre(self.pair.sheets[0].triangle), over_b.centre(self.pair.sheets[1].triangle)];
         let size = a.extent().min(b.extent());
         // B's foot under A's centre, before anything is judged.
-        if let Some(jet) = self.pair.sheets[0].eval(at[0], 0) {
-            if let Some((foot, _)) = self.pair.foot(1, at[1], jet.point) {
-                at[1] = foot;
-            }
+        let centre = self.pair.sheets[0].eval(at[0], 0);
+        if let Some((foot, _)) = centre.and_then(|jet| self.pair.foot(1, at[1], jet.point)) {
+            at[1] = foot;
         }
         let Some(contact) = self.pair.critical(at, size.shl(1)) else { return false };
         let near = over_a.holds(contact.at[0], 1) && over_b.holds(contact.at[1], 1);

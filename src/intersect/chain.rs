@@ -67,7 +67,7 @@ impl<'b> Chains<'b> {
         let chains = Self { records, places };
         let mut at = 0;
         while let Some(record) = chains.records.get(at) {
-            let same = chains.records[at..].iter().take_while(|r| key(**r) == key(*record)).count();
+            let same = chains.records.iter().skip(at).take_while(|r| key(**r) == key(*record)).count();
             let expected = if is_border(Crossing::unpack(key(*record))) { 1 } else { 2 };
             if same != expected && !(has_gaps && same == 1) {
                 return Err(IntersectError::Internal);

@@ -36,6 +36,15 @@ fn meet(a: &GridBox, b: &GridBox) -> bool {
     (0..3).all(|k| a[0][k] <= b[1][k] && b[0][k] <= a[1][k])
 }
 
+/// Entry k of three.
+fn corner<T: Copy>([a, b, c]: &[T; 3], k: usize) -> T {
+    match k {
+        0 => *a,
+        1 => *b,
+        _ => *c,
+    }
+}
+
 fn longest(bounds: &GridBox) -> i64 {
     (0..3).fold(0, |l, k| l.max(i64::from(bounds[1][k]) - i64::from(bounds[0][k])))
 }
@@ -69,7 +78,7 @@ pub(super) fn descend(
             cells(grids, pair, &mut perturbation, &mut found, records)?;
             continue;
         }
-        let split = usize::from(leaf[0] || (!leaf[1] && longest(&boxes[1]) > longest(&boxes[0])));
+        let split = usize::from(leaf[0] || (!leaf[1] && longest(&boxes[1]) > longest(&boxes[0]))) & 1;
         let Node { level, i, j } = pair[split];
         for (di, dj) in [(1, 1), (1, 0), (0, 1), (0, 0)] {
             let child = Node { level: level + 1, i: 2 * i + di, j: 2 * j + dj };
@@ -135,10 +144,10 @@ fn cells(
             }
             for (side, f, g, signs) in [(0, a, b, a_signs), (1, b, a, b_signs)] {
                 for (edge, [p, q]) in f.cell.edges() {
-                    if signs[p] == signs[q] {
+                    if corner(&signs, p) == corner(&signs, q) {
                         continue;
                     }
-                    if perturbation.crosses([f.corners[p], f.corners[q]], g.corners, side == 0) {
+                    if perturbation.crosses([corner(&f.corners, p), corner(&f.corners, q)], g.corners, side == 0) {
                         let Some(place) = crossings.get_mut(count) else { return Err(IntersectError::Internal) };
                         *place = Some(Crossing { side, edge, cell: g.cell });
                         count += 1;
@@ -157,8 +166,8 @@ fn cells(
                     if number >> (ID_BITS - 1) != 0 {
                         return Err(IntersectError::Internal);
                     }
-                    *one = first.pack() << ID_BITS | 2 * number;
-                    *two = second.pack() << ID_BITS | 2 * number + 1;
+                    *one = (first.pack() << ID_BITS) | (2 * number);
+                    *two = (second.pack() << ID_BITS) | (2 * number + 1);
                     found.segments += 1;
                 }
                 _ => return Err(IntersectError::Internal),

@@ -91,7 +91,7 @@ impl Pair<'_> {
                     continue;
                 }
                 let v = grid.vertex(i << stride, j << stride);
-                let far = (0..3).fold(0_i64, |far, k| far.max((i64::from(v[k]) - target[k]).abs()));
+                let far = v.iter().zip(target).fold(0_i64, |far, (c, t)| far.max((i64::from(*c) - t).abs()));
                 if far < best.1 {
                     let shift = 48 - (grid.depth - stride);
                     best = ([(i as i64) << shift, (j as i64) << shift], far);
@@ -105,7 +105,8 @@ impl Pair<'_> {
     /// The spot of an edge's parameter if it lies on the other patch, up to `slack` of its domain.
     fn on_surface(&self, side: usize, edge: usize, parameter: i64, near: Place, slack: i64) -> Option<Spot> {
         let spot = self.edge_spot(side, edge, parameter, near)?;
-        let on = spot.residual <= self.touching() && self.sheets[1 - side].contains(spot.at[1 - side], slack);
+        let on =
+            spot.residual <= self.touching() && self.sheets[(1 - side) & 1].contains(spot.at[(1 - side) & 1], slack);
         on.then_some(spot)
     }
 }
@@ -133,6 +134,10 @@ struct Parts {
 }
 
 impl Parts {
+    fn get(&self, k: usize) -> Option<OnSurface> {
+        *self.list.get(k)?
+    }
+
     fn push(&mut self, part: OnSurface) {
         if let Some(place) = self.list.get_mut(self.count) {
             *place = Some(part);
@@ -161,7 +166,7 @@ pub(super) fn find(
     let mut parts = Parts { list: [None; MOST], count: 0 };
     let sizes = [coarse_size(grids[0]), coarse_size(grids[1])];
     for side in 0..2 {
-        for edge in 0..pair.sheets[side].edge_count() {
+        for edge in 0..pair.sheets[side & 1].edge_count() {
             collect(pair, grids, sizes, (side, edge), &mut parts);
         }
     }
@@ -185,9 +190,9 @@ pub(super) fn find(
 /// Adds the parts of one edge.
 fn collect(pair: &Pair<'_>, grids: [&Grid<'_>; 2], sizes: [i64; 2], (side, edge): (usize, usize), parts: &mut Parts) {
     let other = 1 - side;
-    let sheet = &pair.sheets[side];
-    let shared_with = (0..pair.sheets[other].edge_count()).find_map(|e| {
-        let reversed = |r: &bool| are_equal(sheet, edge, &pair.sheets[other], e, *r);
+    let sheet = &pair.sheets[side & 1];
+    let shared_with = (0..pair.sheets[other & 1].edge_count()).find_map(|e| {
+        let reversed = |r: &bool| are_equal(sheet, edge, &pair.sheets[other & 1], e, *r);
         [false, true].into_iter().find(reversed).map(|r| (e, r))
     });
     // A degenerate edge is a point.
@@ -198,12 +203,12 @@ fn collect(pair: &Pair<'_>, grids: [&Grid<'_>; 2], sizes: [i64; 2], (side, edge)
     }
     let sample = |t: i64| -> Option<Spot> {
         if let Some((e, reversed)) = shared_with {
-            let place = pair.sheets[other].edge_place(e, if reversed { ONE - t } else { t });
+            let place = pair.sheets[other & 1].edge_place(e, if reversed { ONE - t } else { t });
             return pair.shared_spot(side, edge, t, place);
         }
         let point = sheet.eval(sheet.edge_place(edge, t), 0)?.point;
-        let (near, far) = pair.coarse_foot(other, grids[other], point);
-        if far > sizes[other] { None } else { pair.on_surface(side, edge, t, near, BORDER) }
+        let (near, far) = pair.coarse_foot(other, grids[other & 1], point);
+        if far > sizes[other & 1] { None } else { pair.on_surface(side, edge, t, near, BORDER) }
     };
     let mut samples = [None; SAMPLES as usize + 1];
     for (k, place) in (0..).zip(samples.iter_mut()) {
@@ -229,12 +234,12 @@ fn collect(pair: &Pair<'_>, grids: [&Grid<'_>; 2], sizes: [i64; 2], (side, edge)
             high = last_on(pair, (side, edge), high, bounds[1], bounds[1] + ONE / SAMPLES);
         }
         k += 1;
-        let range = [low, high].map(|s| sheet.edge_parameter(edge, s.at[side]));
+        let range = [low, high].map(|s| sheet.edge_parameter(edge, s.at[side & 1]));
         // An edge that passes through the surface, or touches it, meets it in a point, not in a part: there, the distance
         // grows from nothing to the tolerance, quickly.
         let long = range[1] - range[0];
         let firm = |t: i64| {
-            let near = super::trace::middle_place(low.at[other], high.at[other]);
+            let near = super::trace::middle_place(low.at[other & 1], high.at[other & 1]);
             let spot = pair.on_surface(side, edge, t, near, BORDER);
             spot.is_some_and(|s| s.residual <= pair.touching().shl(-4))
         };
@@ -242,7 +247,7 @@ fn collect(pair: &Pair<'_>, grids: [&Grid<'_>; 2], sizes: [i64; 2], (side, edge)
             continue;
         }
         let middle = (range[0] + range[1]) / 2;
-        let near = super::trace::middle_place(low.at[other], high.at[other]);
+        let near = super::trace::middle_place(low.at[other & 1], high.at[other & 1]);
         let Some(centre) = pair.on_surface(side, edge, middle, near, BORDER).or_else(|| sample(middle)) else {
             continue;
         };
@@ -253,7 +258,8 @@ fn collect(pair: &Pair<'_>, grids: [&Grid<'_>; 2], sizes: [i64; 2], (side, edge)
             let ends = |a: &Spot, b: &Spot| difference(a.point, b.point).norm() <= pair.extent.shl(-26);
             let same = (ends(&p.ends[0], &low) && ends(&p.ends[1], &high))
                 || (ends(&p.ends[0], &high) && ends(&p.ends[1], &low));
-            same && p.side != side && pair.sheets[p.side].edge_at(centre.at[p.side], 1 << 20) == Some(p.edge as u8)
+            same && p.side != side
+                && pair.sheets[p.side & 1].edge_at(centre.at[p.side & 1], 1 << 20) == Some(p.edge as u8)
         });
         if !known {
             parts.push(OnSurface { side, edge, ends: [low, high], tangential, shared, used: false });
@@ -266,7 +272,7 @@ fn last_on(pair: &Pair<'_>, (side, edge): (usize, usize), on: Spot, mut low: i64
     let mut last = on;
     for _ in 0..48 {
         let middle = (low + high) >> 1;
-        match pair.on_surface(side, edge, middle, last.at[1 - side], 4) {
+        match pair.on_surface(side, edge, middle, last.at[(1 - side) & 1], 4) {
             Some(spot) => (low, last) = (middle, spot),
             None => high = middle,
         }
@@ -280,12 +286,12 @@ fn last_on(pair: &Pair<'_>, (side, edge): (usize, usize), on: Spot, mut low: i64
 impl Pair<'_> {
     /// The spot of a shared edge, whose place on the other patch is known.
     fn shared_spot(&self, side: usize, edge: usize, parameter: i64, place: Place) -> Option<Spot> {
-        let own = self.sheets[side].edge_place(edge, parameter);
+        let own = self.sheets[side & 1].edge_place(edge, parameter);
         let at = if side == 0 { [own, place] } else { [place, own] };
         let jets = self.jets(at, 1)?;
         let mut spot = self.spot(at, &jets);
-        let [a, b] = self.sheets[side].edge_direction(edge).map(Real::int);
-        spot.tangent = (jets[side].first[0] * a + jets[side].first[1] * b).unit();
+        let [a, b] = self.sheets[side & 1].edge_direction(edge).map(Real::int);
+        spot.tangent = (jets[side & 1].first[0] * a + jets[side & 1].first[1] * b).unit();
         spot.rates = both!(|s| super::newton::pull_back(&jets[s].first, jets[s].normal(), spot.tangent));
         Some(spot)
     }
@@ -303,11 +309,11 @@ fn run(
     let tracer = Tracer { pair, locus, forward: true, tolerance };
     let [a, b] = if backwards { [part.ends[1].oriented(false), part.ends[0].oriented(false)] } else { part.ends };
     // Eight pieces at first: a chord says little about a long edge.
-    let sheet = &pair.sheets[part.side];
-    let [low, high] = [a, b].map(|s| sheet.edge_parameter(part.edge, s.at[part.side]));
+    let sheet = &pair.sheets[part.side & 1];
+    let [low, high] = [a, b].map(|s| sheet.edge_parameter(part.edge, s.at[part.side & 1]));
     let mut from = a;
     for k in 1..=8 {
-        let near = from.at[1 - part.side];
+        let near = from.at[(1 - part.side) & 1];
         let next = if k == 8 {
             Some(b)
         } else {
@@ -327,20 +333,22 @@ fn regions(pair: &Pair<'_>, tolerance: Real, parts: &mut Parts, out: &mut Output
     let mut any = false;
     for start in 0..parts.count {
         let mut order = [(0, false); MOST];
-        let Some(first) = parts.list[start].filter(|p| p.tangential && !p.used) else { continue };
+        let Some(first) = parts.get(start).filter(|p| p.tangential && !p.used) else { continue };
         let (mut length, mut end) = (1, first.ends[1]);
         order[0] = (start, false);
         while !near(&end, &first.ends[0]) && length < MOST {
             let next = (0..parts.count).find_map(|k| {
-                let part = parts.list[k].filter(|p| p.tangential && !p.used)?;
-                if order[..length].iter().any(|(used, _)| *used == k) {
+                let part = parts.get(k).filter(|p| p.tangential && !p.used)?;
+                if order.iter().take(length).any(|(used, _)| *used == k) {
                     return None;
                 }
                 let [a, b] = part.ends;
                 if near(&a, &end) { Some((k, false, b)) } else { near(&b, &end).then_some((k, true, a)) }
             });
             let Some((k, backwards, other)) = next else { break };
-            order[length] = (k, backwards);
+            if let Some(place) = order.get_mut(length) {
+                *place = (k, backwards);
+            }
             length += 1;
             end = other;
         }
@@ -348,8 +356,8 @@ fn regions(pair: &Pair<'_>, tolerance: Real, parts: &mut Parts, out: &mut Output
             continue;
         }
         let (begin, unrefined) = (out.used, out.unrefined);
-        for (n, (k, backwards)) in order[..length].iter().enumerate() {
-            let Some(part) = parts.list[*k] else { continue };
+        for (n, (k, backwards)) in order.iter().take(length).enumerate() {
+            let Some(part) = parts.get(*k) else { continue };
             if n == 0 || !part.tangential {
                 out.emit(&part.ends[0])?;
             } else {
@@ -360,10 +368,10 @@ fn regions(pair: &Pair<'_>, tolerance: Real, parts: &mut Parts, out: &mut Output
             let part = shortened(pair, &part, *backwards);
             run(pair, tolerance, &part, *backwards, out)?;
         }
-        if encloses(pair, &out.points[begin..out.used]) {
+        if encloses(pair, out.points.get(begin..out.used).unwrap_or(&[])) {
             out.finish(CurveKind::OverlapRegion, true, [super::End::None; 2], begin)?;
-            for (k, _) in &order[..length] {
-                if let Some(part) = &mut parts.list[*k] {
+            for (k, _) in order.iter().take(length) {
+                if let Some(Some(part)) = parts.list.get_mut(*k) {
                     part.used = true;
                 }
             }
@@ -377,14 +385,14 @@ fn regions(pair: &Pair<'_>, tolerance: Real, parts: &mut Parts, out: &mut Output
 
 /// A part that ends 2^-34 of an edge early, so that a corner has a point for either of its tangents.
 fn shortened(pair: &Pair<'_>, part: &OnSurface, backwards: bool) -> OnSurface {
-    let sheet = &pair.sheets[part.side];
+    let sheet = &pair.sheets[part.side & 1];
     let last = usize::from(!backwards);
-    let end = part.ends[last];
+    let end = part.ends[last & 1];
     let parameter =
-        sheet.edge_parameter(part.edge, end.at[part.side]) + if backwards { ONE >> 34 } else { -(ONE >> 34) };
-    let spot = pair.edge_spot(part.side, part.edge, parameter, end.at[1 - part.side]);
+        sheet.edge_parameter(part.edge, end.at[part.side & 1]) + if backwards { ONE >> 34 } else { -(ONE >> 34) };
+    let spot = pair.edge_spot(part.side, part.edge, parameter, end.at[(1 - part.side) & 1]);
     let mut out = *part;
-    out.ends[last] = spot.unwrap_or(end);
+    out.ends[last & 1] = spot.unwrap_or(end);
     out
 }
 

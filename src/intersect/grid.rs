@@ -217,6 +217,16 @@ integer!(i128);
 
 const ORDER: usize = MAX_DEGREE + 1;
 
+/// A power that exists: no degree is above [`MAX_DEGREE`].
+fn at<T: Integer>(powers: &[T; ORDER], k: usize) -> T {
+    powers[k.min(MAX_DEGREE)]
+}
+
+/// C(n, k).
+fn choose<T: Integer>(n: usize, k: usize) -> T {
+    T::of(BINOMIAL[n.min(MAX_DEGREE)][k.min(MAX_DEGREE)].into())
+}
+
 /// x^0 ..= x^8.
 fn powers<T: Integer>(x: i64) -> [T; ORDER] {
     let mut out = [T::of(1); ORDER];
@@ -252,6 +262,7 @@ fn by_differences<T: Integer>(net: SurfaceNet<'_>, depth: u32, out: &mut [GridVe
             }
             for order in 1..=h {
                 for k in (order..=h).rev() {
+                    let k = k.clamp(1, MAX_DEGREE);
                     table[k] = table[k].sub(table[k - 1]);
                 }
             }
@@ -262,6 +273,7 @@ fn by_differences<T: Integer>(net: SurfaceNet<'_>, depth: u32, out: &mut [GridVe
             }
             for table in tables.iter_mut().take(axes) {
                 for k in 0..h {
+                    let k = k.min(MAX_DEGREE - 1);
                     table[k] = table[k].add(table[k + 1]);
                 }
             }
@@ -286,10 +298,10 @@ fn across<T: Integer>(net: SurfaceNet<'_>, (m, h): (usize, usize), axis: usize, 
     let (up, down) = (powers::<T>(i), powers::<T>(n - i));
     let mut out = [T::ZERO; ORDER];
     for a in 0..=m {
-        let weight = up[a].mul(down[m - a]).mul(T::of(BINOMIAL[m][a].into()));
+        let weight = at(&up, a).mul(at(&down, m - a)).mul(choose(m, a));
         for (b, out) in out.iter_mut().enumerate().take(h + 1) {
             let c = T::of(homogeneous(net, a * (h + 1) + b, axis));
-            *out = out.add(weight.mul(c).mul(T::of(BINOMIAL[h][b].into())));
+            *out = out.add(weight.mul(c).mul(choose(h, b)));
         }
     }
     out
@@ -303,9 +315,9 @@ fn over_triangle<T: Integer>(net: SurfaceNet<'_>, n: usize, axis: usize, [i, j, 
         let a = n - beyond;
         for c in 0..=beyond {
             let b = beyond - c;
-            let arrangements = i64::from(BINOMIAL[n][a]) * i64::from(BINOMIAL[beyond][b]);
-            let point = T::of(homogeneous(net, triangle_index(b, c), axis)).mul(T::of(arrangements));
-            sum = sum.add(of_i[a].mul(of_j[b]).mul(of_k[c]).mul(point));
+            let arrangements = choose::<T>(n, a).mul(choose(beyond, b));
+            let point = T::of(homogeneous(net, triangle_index(b, c), axis)).mul(arrangements);
+            sum = sum.add(at(&of_i, a).mul(at(&of_j, b)).mul(at(&of_k, c)).mul(point));
         }
     }
     sum
@@ -316,7 +328,7 @@ fn along<T: Integer>(coefficients: &[T; ORDER], h: usize, j: i64, k: i64) -> T {
     let (up, down) = (powers::<T>(j), powers::<T>(k));
     let mut sum = T::ZERO;
     for b in 0..=h.min(MAX_DEGREE) {
-        sum = sum.add(coefficients[b].mul(up[b]).mul(down[h - b]));
+        sum = sum.add(at(coefficients, b).mul(at(&up, b)).mul(at(&down, h.saturating_sub(b))));
     }
     sum
 }

@@ -397,16 +397,14 @@ fn in_order<'b>(
     };
     let mut sensitive = false;
     if found.zeros > 0 {
-        let mut signatures = [Signature::default(); 2];
-        for (positive, signature) in [(true, 0), (false, 1)] {
+        let mut signature = |positive: bool| -> Result<Signature, IntersectError> {
             let found = descent::descend(grids, positive, options.pairs, records)?;
             let used = 2 * found.segments;
             let (records, links) = (records.get_mut(..used), links.get_mut(..used));
-            let mut chains =
-                Chains::new(records.unwrap_or(&mut []), links.unwrap_or(&mut []), found.degenerate > 0, is_border)?;
-            signatures[signature] = chains.signature()?;
-        }
-        sensitive = signatures[0] != signatures[1];
+            let (records, links) = (records.unwrap_or(&mut []), links.unwrap_or(&mut []));
+            Chains::new(records, links, found.degenerate > 0, is_border)?.signature()
+        };
+        sensitive = signature(true)? != signature(false)?;
         descent::descend(grids, true, options.pairs, records)?;
     }
     let used = 2 * found.segments;

@@ -178,7 +178,7 @@ impl<'a> Pair<'a> {
 
     /// Whether a place lies in a patch's domain, up to `slack` units of 2^-48.
     pub(super) fn inside(&self, at: Places, slack: i64) -> bool {
-        [0, 1].into_iter().all(|s: usize| self.sheets[s].contains(at[s], slack))
+        self.sheets.iter().zip(at).all(|(sheet, place)| sheet.contains(place, slack))
     }
 }
 

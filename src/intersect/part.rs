@@ -122,6 +122,12 @@ fn lerp(a: &Homogeneous, b: &Homogeneous, t: i64) -> Homogeneous {
     out
 }
 
+/// A de Casteljau step of entry i.
+fn step(values: &mut [Homogeneous; MAX_DEGREE + 1], i: usize, t: i64) {
+    let i = i.min(MAX_DEGREE - 1);
+    values[i] = lerp(&values[i], &values[i + 1], t);
+}
+
 /// The control points of the part low ..= high of a curve: the blossom at low^(n−k) high^k.
 fn piece(values: &[Homogeneous; MAX_DEGREE + 1], n: usize, low: i64, high: i64) -> [Homogeneous; MAX_DEGREE + 1] {
     let mut out = [[0; 4]; MAX_DEGREE + 1];
@@ -131,12 +137,12 @@ fn piece(values: &[Homogeneous; MAX_DEGREE + 1], n: usize, low: i64, high: i64) 
         let mut rest = start;
         for left in (1..=k).rev() {
             for i in 0..left {
-                rest[i] = lerp(&rest[i], &rest[i + 1], high);
+                step(&mut rest, i, high);
             }
         }
-        out[k] = rest[0];
+        out[k.min(MAX_DEGREE)] = rest[0];
         for i in 0..k {
-            start[i] = lerp(&start[i], &start[i + 1], low);
+            step(&mut start, i, low);
         }
     }
     out
@@ -211,7 +217,7 @@ impl Part {
                     *out = *value;
                 }
                 for (column, value) in columns.iter_mut().zip(piece(&row, h, v, y)) {
-                    column[i] = value;
+                    column[i.min(MAX_DEGREE)] = value;
                 }
             }
             for (j, column) in columns.iter().enumerate().take(h + 1) {
@@ -301,7 +307,7 @@ impl Part {
         let mut points = [[0_i64; 3]; ROOM];
         for ((out, p), w) in points.iter_mut().zip(self.points()).zip(&self.weights) {
             for k in 0..3 {
-                out[k] = ((p[k] - middle[k]) >> shift) * i64::from(*w) >> 24;
+                out[k] = (((p[k] - middle[k]) >> shift) * i64::from(*w)) >> 24;
             }
         }
         let radius = (size >> shift) + 1;
@@ -319,9 +325,8 @@ impl Part {
     fn directions(&self, points: &[[i64; 3]; ROOM], radius: i64, along: usize) -> Option<(V3, Real)> {
         let mut sum = [0_i64; 3];
         self.differences(along, |a, b| {
-            for k in 0..3 {
-                sum[k] += points[b][k] - points[a][k];
-            }
+            let [p, q] = [a, b].map(|k| points.get(k).copied().unwrap_or([0; 3]));
+            sum = three!(|k| sum[k] + q[k] - p[k]);
         });
         let axis = V3::bits(sum, 0);
         let length = axis.square();
@@ -329,13 +334,15 @@ impl Part {
             return None;
         }
         let (mut worst, mut shortest, mut turn) = (Real::ZERO, Real::power(60), 0_i64);
-        self.differences(along, |a, b| turn = turn.max(i64::from((self.weights[a] - self.weights[b]).abs())));
+        let weight = |k: usize| self.weights.get(k).copied().unwrap_or(0);
+        self.differences(along, |a, b| turn = turn.max(i64::from((weight(a) - weight(b)).abs())));
         // Two units of rounding a component, and what the weights' change adds.
         let widening = Real::int(4 + if turn == 0 { 0 } else { 2 * ((radius * turn) >> 24) + 2 });
         let inverse = Real::ONE / length.sqrt();
         let mut bad = false;
         self.differences(along, |a, b| {
-            let d = V3::bits(three!(|k| points[b][k] - points[a][k]), 0);
+            let [p, q] = [a, b].map(|k| points.get(k).copied().unwrap_or([0; 3]));
+            let d = V3::bits(three!(|k| q[k] - p[k]), 0);
             let forward = d.dot(axis) * inverse;
             let aside = (d.square() - forward.square()).max(Real::ZERO);
             let least = forward - widening;

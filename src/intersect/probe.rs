@@ -102,7 +102,7 @@ pub fn project(
 
 impl Sheet<'_> {
     /// A place brought into the domain, to the nearest in the parameters.
-    fn into_domain(&self, [u, v]: Place) -> Place {
+    fn clamped(&self, [u, v]: Place) -> Place {
         if !self.triangle {
             return [u.clamp(0, ONE), v.clamp(0, ONE)];
         }
@@ -142,7 +142,7 @@ fn descend(sheet: &Sheet<'_>, start: Place, c: [i64; 3]) -> Place {
         let mut better = None;
         for step in candidates {
             for shift in [0, -2, -5] {
-                let next = sheet.into_domain(shifted(place, step.map(|s| s.shl(shift))));
+                let next = sheet.clamped(shifted(place, step.map(|s| s.shl(shift))));
                 if let Some(square) = far(next).filter(|s| *s < least) {
                     (better, least) = (Some(next), square);
                     break;
@@ -213,10 +213,9 @@ pub fn curve_points(
             if let Some(spot) = spot.filter(|s| pair.sheets[1].contains(s.at[1], super::trace::BORDER)) {
                 let known =
                     |s: &super::newton::Spot| close(s.at[0][0], spot.at[0][0]) && close(s.at[1][0], spot.at[1][0]);
-                if !found.iter().flatten().any(known) {
-                    if let Some(free) = found.iter_mut().find(|f| f.is_none()) {
-                        *free = Some(spot);
-                    }
+                let is_new = !found.iter().flatten().any(known);
+                if let Some(free) = found.iter_mut().find(|f| f.is_none()).filter(|_| is_new) {
+                    *free = Some(spot);
                 }
             }
         })?;
@@ -241,8 +240,10 @@ pub fn curve_points(
     // In the order of t: few points, by insertion.
     for i in 1..used {
         for j in (1..=i).rev() {
-            if out[j].parameters[0][0] < out[j - 1].parameters[0][0] {
-                out.swap(j, j - 1);
+            if let Some([a, b]) = out.get_mut(j - 1..=j)
+                && b.parameters[0][0] < a.parameters[0][0]
+            {
+                core::mem::swap(a, b);
             }
         }
     }

@@ -87,8 +87,8 @@ fn collapse<const D: usize>(values: &mut [Homogeneous; MAX_DEGREE + 1], n: usize
             second = minus::<D>(&minus::<D>(&values[2], &values[1]), &minus::<D>(&values[1], &values[0]));
         }
         for i in 0..left {
-            let next = values[i + 1];
-            let value = &mut values[i];
+            let next = values[(i + 1).min(MAX_DEGREE)];
+            let value = &mut values[i.min(MAX_DEGREE)];
             for k in 0..D {
                 value[k] = between(value[k], next[k], t);
             }
@@ -162,17 +162,16 @@ impl<'a> Sheet<'a> {
     fn tensor<const D: usize>(&self, [u, v]: Place, order: u32) -> [Homogeneous; 6] {
         let (m, h) = (self.degrees.0.min(MAX_DEGREE), self.degrees.1.min(MAX_DEGREE));
         let mut columns = [[[0; 4]; MAX_DEGREE + 1]; 3];
-        for i in 0..=m {
+        let [values, slopes, bends] = &mut columns;
+        let out = values.iter_mut().zip(slopes.iter_mut()).zip(bends.iter_mut());
+        for (((value, slope), bend), points) in out.zip(self.net.chunks(h + 1)).take(m + 1) {
             let mut row = [[0; 4]; MAX_DEGREE + 1];
-            for (out, point) in row.iter_mut().zip(self.net.iter().skip(i * (h + 1)).take(h + 1)) {
+            for (out, point) in row.iter_mut().zip(points) {
                 *out = *point;
             }
             let along = collapse::<D>(&mut row, h, v);
-            columns[0][i] = along.value;
-            columns[1][i] = along.first;
-            columns[2][i] = along.second;
+            (*value, *slope, *bend) = (along.value, along.first, along.second);
         }
-        let [values, slopes, bends] = &mut columns;
         let s = collapse::<D>(values, m, u);
         if order == 0 {
             return [s.value, s.first, [0; 4], [0; 4], [0; 4], [0; 4]];
@@ -197,7 +196,7 @@ impl<'a> Sheet<'a> {
         let mut second = [[0; 4]; 3];
         for degree in (0..n).rev() {
             if degree == 1 {
-                let [c200, c110, c101, c020, c011, c002] = [0, 1, 2, 3, 4, 5].map(|i: usize| values[i]);
+                let [c200, c110, c101, c020, c011, c002, ..] = values;
                 let along_u = [minus::<D>(&c200, &c101), minus::<D>(&c101, &c002)];
                 let along_v = minus::<D>(&c011, &c002);
                 second = [
@@ -211,8 +210,10 @@ impl<'a> Sheet<'a> {
             }
             for row in 0..=degree {
                 for k in 0..=row {
-                    let at = triangle_index(row - k, k);
-                    values[at] = combine::<D>([&values[at], &values[at + row + 1], &values[at + row + 2]], [u, v, w]);
+                    // The index never passes the last; a compiler for size does not see it.
+                    let last = values.len() - 1;
+                    let [at, v_at, w_at] = corner_indices(row, k).map(|at| at.min(last));
+                    values[at] = combine::<D>([&values[at], &values[v_at], &values[w_at]], [u, v, w]);
                 }
             }
         }
@@ -248,23 +249,30 @@ impl<'a> Sheet<'a> {
             return None;
         }
         let inverse = Real::ONE / Real::new(value[3], -self.bits);
-        let weight = |k: usize| Real::new(sums[k][3], -self.bits) * Real::int(factors[k - 1] as i64);
+        let weight = |k: usize| Real::new(sums[k.min(5)][3], -self.bits) * Real::int(factors[(k - 1).min(4)] as i64);
         let s = scale(value, 1) * inverse;
         let mut jet = Jet { point: s.fixed(POINT_BITS), first: [V3::ZERO; 2], second: [V3::ZERO; 3] };
         if order >= 1 {
-            let slope = |k: usize| (scale(&sums[k], factors[k - 1]) - s * weight(k)) * inverse;
+            let slope = |k: usize| (scale(&sums[k.min(5)], factors[(k - 1).min(4)]) - s * weight(k)) * inverse;
             jet.first = [slope(1), slope(2)];
         }
         if order >= 2 {
             // Leibniz: (wS)'' = wS'' + 2w'S' + w''S, the mixed one by both.
             let bend = |k: usize, a: usize, b: usize| {
-                let lower = jet.first[a - 1] * weight(b) + jet.first[b - 1] * weight(a);
-                (scale(&sums[k], factors[k - 1]) - lower - s * weight(k)) * inverse
+                let lower = jet.first[(a - 1) & 1] * weight(b) + jet.first[(b - 1) & 1] * weight(a);
+                (scale(&sums[k.min(5)], factors[(k - 1).min(4)]) - lower - s * weight(k)) * inverse
             };
             jet.second = [bend(3, 1, 1), bend(4, 1, 2), bend(5, 2, 2)];
         }
         Some(jet)
     }
+}
+
+/// Where the parents towards u, v and w of entry k of a row of a triangular net's next level stand.
+#[inline(always)]
+pub(super) const fn corner_indices(row: usize, k: usize) -> [usize; 3] {
+    let at = triangle_index(row - k, k);
+    [at, at + row + 1, at + row + 2]
 }
 
 /// `value` · 2^`shift`, half up.

@@ -249,15 +249,13 @@ impl Tracer<'_, '_> {
                 }
                 h = h.min(distance.shl(-1));
             }
-            if let Some(origin) = origin.filter(|_| steps >= 3) {
-                if let Some(distance) = Self::ahead(&p, origin.point, h + h.shl(-1)) {
-                    if p.tangent.dot(origin.tangent) > Real::power(-1) {
-                        if self.join(out, &p, origin, false)? {
-                            return Ok((Stop::Closed, *origin));
-                        }
-                        h = h.min(distance.shl(-1));
-                    }
+            let home = origin.filter(|o| steps >= 3 && p.tangent.dot(o.tangent) > Real::power(-1));
+            let ahead = home.and_then(|o| Some((o, Self::ahead(&p, o.point, h + h.shl(-1))?)));
+            if let Some((origin, distance)) = ahead {
+                if self.join(out, &p, origin, false)? {
+                    return Ok((Stop::Closed, *origin));
                 }
+                h = h.min(distance.shl(-1));
             }
             if h < shortest {
                 return Ok((Stop::Lost, p));

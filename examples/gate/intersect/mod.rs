@@ -90,7 +90,7 @@ impl Digest for Projection {
 impl Digest for Intersection<'_> {
     fn digest(&self, sum: &mut Sum) {
         for curve in Intersection::curves(self) {
-            [curve.kind == CurveKind::Closed, curve.closed, curve.ends[1] == End::None].digest(sum);
+            [curve.kind == CurveKind::Closed, curve.closed, curve.ends == [End::None; 2]].digest(sum);
             curve.length.to_bits().digest(sum);
             Intersection::points(self, curve).digest(sum);
         }
@@ -115,8 +115,9 @@ pub(super) fn calls(sum: &mut Sum) {
     let nets: [SurfaceNet<'_>; 3] = hide([SHEET.surface(), FLOOR.surface(), LEAF.surface()]);
     sum.add(intersect(nets[0], hide(&data::OCTANT).surface(), &options(), work.buffers()));
     sum.add(intersect(nets[1], hide(&data::WEIGHTED).surface(), &options(), work.buffers()));
-    for [a, b] in [[0, 1], [1, 2], [0, 2], [0, 0]] {
-        let result: Result<Intersection<'_>, IntersectError> = intersect(nets[a], nets[b], &options(), work.buffers());
+    let [one, two, three] = nets;
+    for [a, b] in [[one, two], [two, three], [one, three], [one, one]] {
+        let result: Result<Intersection<'_>, IntersectError> = intersect(a, b, &options(), work.buffers());
         sum.add(result);
     }
     let room = Room::new(nets[0], nets[1], hide(MIN_DEPTH));
