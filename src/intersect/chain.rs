@@ -18,7 +18,7 @@ pub(super) fn sort(values: &mut [u64]) {
             if value <= here {
                 return;
             }
-            values.swap(at, larger);
+            exchange(values, at, larger);
             at = larger;
         }
     };
@@ -27,8 +27,15 @@ pub(super) fn sort(values: &mut [u64]) {
         sift(values, at, len);
     }
     for end in (1..len).rev() {
-        values.swap(0, end);
+        exchange(values, 0, end);
         sift(values, 0, end);
+    }
+}
+
+/// `swap` without its panic.
+fn exchange(values: &mut [u64], a: usize, b: usize) {
+    if let Ok([x, y]) = values.get_disjoint_mut([a, b]) {
+        core::mem::swap(x, y);
     }
 }
 

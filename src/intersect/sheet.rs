@@ -212,7 +212,8 @@ impl<'a> Sheet<'a> {
                 for k in 0..=row {
                     // The index never passes the last; a compiler for size does not see it.
                     let last = values.len() - 1;
-                    let [at, v_at, w_at] = corner_indices(row, k).map(|at| at.min(last));
+                    let [at, v_at, w_at] = corner_indices(row, k);
+                    let (at, v_at, w_at) = (at.min(last), v_at.min(last), w_at.min(last));
                     values[at] = combine::<D>([&values[at], &values[v_at], &values[w_at]], [u, v, w]);
                 }
             }
