@@ -7,6 +7,8 @@
 //! ```
 #![allow(clippy::disallowed_types, clippy::float_arithmetic, reason = "a picture made on a host")]
 
+#[path = "data/command.rs"]
+mod command;
 #[path = "data/mesh_file.rs"]
 mod mesh_file;
 #[path = "data/polyhedra.rs"]
@@ -25,6 +27,7 @@ use embedded_surfaces::num::I32F32;
 use mesh_file::Polyhedron;
 use std::error::Error;
 use std::path::PathBuf;
+use std::process::ExitCode;
 
 /// Draw coarse meshes as flat triangles, PN triangles and smooth quintic triangles.
 #[derive(Parser)]
@@ -72,8 +75,11 @@ fn skin(mesh: &Polyhedron, scheme: Scheme) -> Result<(Vec<zebra::Net>, Quality),
     Ok((nets.collect(), surface.quality()?))
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let arguments = Arguments::parse();
+fn main() -> ExitCode {
+    command::end(run(&Arguments::parse()))
+}
+
+fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let models = match &arguments.mesh {
         Some(path) => {
             let mesh = mesh_file::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
@@ -102,7 +108,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let Ok(()) = picture.draw_iter(pixels.map(|(i, [r, g, b])| Pixel(place(i), Rgb888::new(r, g, b))));
         }
     }
-    picture.to_rgb_output_image(&OutputSettings::default()).save_png(&arguments.output)?;
+    command::save_png(&picture, &OutputSettings::default(), &arguments.output)?;
     println!("{}", arguments.output.display());
     Ok(())
 }

@@ -9,6 +9,7 @@ mod g1;
 mod geometry;
 #[cfg(feature = "graphics")]
 mod graphics;
+mod intersect;
 mod mesh;
 mod num;
 mod patch;
@@ -41,6 +42,7 @@ pub(crate) const MODULES: &[Module] = &[
     ("subdivide", subdivide::calls),
     ("subdivide, meshes", subdivide::mesh::calls),
     ("g1", g1::calls),
+    ("intersect", intersect::calls),
     ("render", render::calls),
     ("render, grid", render::grid::calls),
     #[cfg(feature = "graphics")]

@@ -9,6 +9,7 @@ mod case;
 mod draw;
 mod field;
 mod g1;
+mod intersect;
 mod lattice;
 mod render;
 mod tessellate;
@@ -42,6 +43,8 @@ enum Command {
     Tessellate,
     /// Quintic triangles over a triangle mesh
     G1,
+    /// The curves in which two patches meet
+    Intersect,
 }
 
 /// A result, or a typed error of the geometry as one.
@@ -60,6 +63,7 @@ fn run_one(command: Command, case: &Field<'_>, output: Option<PathBuf>) -> Answe
         Command::Render => render::run(case, output)?,
         Command::Tessellate => tessellate::run(case)?,
         Command::G1 => g1::run(case)?,
+        Command::Intersect => intersect::run(case)?,
     };
     let name = case.get("name").map(|name| ("name".to_owned(), name.value().clone()));
     Ok(name.into_iter().chain(answer).collect())
@@ -93,7 +97,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let result = run(&arguments).and_then(|value| {
         let text = value.to_string();
-        if let (Command::Lattice | Command::Tessellate | Command::G1, Some(path)) =
+        if let (Command::Lattice | Command::Tessellate | Command::G1 | Command::Intersect, Some(path)) =
             (arguments.command, &arguments.output)
         {
             std::fs::write(path, &text).map_err(|e| Malformed::new("-o", &format!("{}: {e}", path.display())))?;

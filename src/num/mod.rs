@@ -12,6 +12,7 @@
 //! | [`Word`] | what the engine accumulates in: `i32`, `i64`, `i128` | chosen from a proven budget |
 
 mod coord;
+mod real;
 mod reciprocal;
 mod round;
 mod text;
@@ -26,6 +27,7 @@ pub use trig::Angle;
 pub use word::Word;
 
 pub(crate) use coord::{bits_i16f16, bits_i32f32};
+pub(crate) use real::Real;
 pub(crate) use reciprocal::{Factor, leading_zeros, multiply, reciprocal, reciprocal_root};
 pub(crate) use round::{BINOMIAL, SURJECTIONS, div_half_up, div_up, shift_half_up, shift_up, sqrt_up};
 pub(crate) use text::{Decimal, binary32};

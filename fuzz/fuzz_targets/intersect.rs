@@ -1,0 +1,97 @@
+//! Two patches of any kind, near each other, alike or degenerate: no panic, and no rule of the method is broken.
+#![no_main]
+
+use arbitrary::{Result, Unstructured};
+use embedded_surfaces::geometry::{Axis, Point3};
+use embedded_surfaces::intersect::{
+    Branch, Buffers, Curve, CurvePoint, IntersectError, Options, Room, intersect, project, section,
+};
+use embedded_surfaces::num::I16F16;
+use embedded_surfaces::patch::{RationalTensorNet, RationalTriangleNet, SurfaceNet, TensorNet, TriangleNet};
+use libfuzzer_sys::fuzz_target;
+
+struct Patch {
+    triangle: bool,
+    degrees: (usize, usize),
+    points: Vec<Point3>,
+    weights: Option<Vec<I16F16>>,
+}
+
+impl Patch {
+    fn read(u: &mut Unstructured<'_>) -> Result<Self> {
+        let triangle = u.ratio(1, 3)?;
+        let (m, h) = (u.int_in_range(1..=4)?, u.int_in_range(1..=3)?);
+        let count = if triangle { (m + 1) * (m + 2) / 2 } else { (m + 1) * (h + 1) };
+        // Whole numbers of one byte meet in special ways; any bits are the rest.
+        let whole: bool = u.arbitrary()?;
+        let mut c = || -> Result<i32> { Ok(if whole { i32::from(u.arbitrary::<i8>()?) << 16 } else { u.arbitrary()? }) };
+        let points = (0..count).map(|_| Ok(Point3::from_bits(c()?, c()?, c()?))).collect::<Result<_>>()?;
+        let weights = if u.ratio(1, 4)? {
+            let weight = |_| Ok(I16F16::from_bits(u.int_in_range(1..=1 << 18)?));
+            Some((0..count).map(weight).collect::<Result<_>>()?)
+        } else {
+            None
+        };
+        Ok(Self { triangle, degrees: (m, if triangle { m } else { h }), points, weights })
+    }
+
+    fn net(&self) -> Option<SurfaceNet<'_>> {
+        Some(if self.triangle {
+            let net = TriangleNet::new(self.degrees.0, &self.points).ok()?;
+            match &self.weights {
+                None => SurfaceNet::Triangle(net),
+                Some(weights) => SurfaceNet::RationalTriangle(RationalTriangleNet::new(net, weights).ok()?),
+            }
+        } else {
+            let net = TensorNet::new(self.degrees, &self.points).ok()?;
+            match &self.weights {
+                None => SurfaceNet::Tensor(net),
+                Some(weights) => SurfaceNet::RationalTensor(RationalTensorNet::new(net, weights).ok()?),
+            }
+        })
+    }
+}
+
+fn check(u: &mut Unstructured<'_>) -> Result<()> {
+    let (one, mut two) = (Patch::read(u)?, Patch::read(u)?);
+    // Patches that share points, some of them off by a bit.
+    for (k, p) in one.points.iter().enumerate() {
+        if u.ratio(1, 3)? {
+            if let Some(q) = two.points.get_mut(k) {
+                *q = *p;
+                q.z = q.z.wrapping_add(I16F16::from_bits(u.int_in_range(-1..=1)?));
+            }
+        }
+    }
+    let (Some(a), Some(b)) = (one.net(), two.net()) else { return Ok(()) };
+    let options = Options::DEFAULT.with_depth(u.int_in_range(3..=5)?).with_budgets(1 << 16, 1 << 8);
+    let Ok(room) = Room::new(a, b, options.depth) else { panic!("the depth is legal") };
+    let (mut vertices, mut boxes) = (vec![[0; 3]; room.vertices], vec![[[0; 3]; 2]; room.boxes]);
+    let (mut records, mut links) = (vec![0; 1 << 12], vec![0; 1 << 12]);
+    let (mut points, mut curves) = (vec![CurvePoint::BLANK; 1 << 10], vec![Curve::BLANK; 32]);
+    let mut branches = [Branch::BLANK; 4];
+    let at = I16F16::from_bits(u.arbitrary()?);
+    for turn in 0..3 {
+        let buffers = Buffers {
+            vertices: &mut vertices,
+            boxes: &mut boxes,
+            records: &mut records,
+            links: &mut links,
+            points: &mut points,
+            curves: &mut curves,
+            branches: &mut branches,
+        };
+        let result = match turn {
+            0 => intersect(a, b, &options, buffers),
+            1 => intersect(b, a, &options, buffers),
+            _ => section(a, Axis::Z, at, &options, buffers),
+        };
+        assert!(!matches!(result, Err(IntersectError::Internal)), "a rule is broken");
+    }
+    assert!(project(b, one.points[0], options.depth, &mut vertices, &mut boxes).is_ok());
+    Ok(())
+}
+
+fuzz_target!(|data: &[u8]| {
+    let _ = check(&mut Unstructured::new(data));
+});

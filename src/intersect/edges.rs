@@ -1,0 +1,463 @@
+//! Edges that lie on the other patch: shared edges, edges on a surface, borders of regions where the surfaces coincide.
+//!
+//! An edge is looked at before anything else: on it the surfaces meet in no point that a mesh could find reliably. Shared
+//! edges are found by exact comparison of control points; parts of edges on a surface by samples whose feet are at no
+//! distance, their ends by bisection.
+
+use super::IntersectError;
+use super::curve::{Curve, CurveKind, CurvePoint};
+use super::grid::Grid;
+use super::hermite::Piece;
+use super::newton::{Pair, Spot, difference};
+use super::sheet::{ONE, Place, Sheet};
+use super::trace::{BORDER, Locus, Output, Tracer};
+use crate::geometry::Point3;
+use crate::num::{Coord, I16F16, Real};
+use crate::patch::{MAX_DEGREE, triangle_index};
+
+/// Samples of an edge are this many less one.
+const SAMPLES: i64 = 8;
+/// A vertex of 2^this cells a side is where a foot is searched from.
+const COARSE: u32 = 3;
+/// Parts of edges on a surface that are kept at most: 7 or 8 edges, a few parts each.
+const MOST: usize = 12;
+/// The largest sine of an angle that counts as none along a curve.
+const PARALLEL: Real = Real::power(-17);
+
+/// A control point of an edge with its weight.
+type EdgePoint = (Point3<I16F16>, i32);
+
+/// A part of an edge on the other patch.
+#[derive(Clone, Copy, Debug)]
+struct OnSurface {
+    side: usize,
+    edge: usize,
+    /// Its ends, with tangents along the rising parameter.
+    ends: [Spot; 2],
+    /// Whether tangent planes agree at the ends and in the middle.
+    tangential: bool,
+    shared: bool,
+    used: bool,
+}
+
+impl Sheet<'_> {
+    /// Control point `k` of an edge, in the direction of its parameter.
+    fn edge_point(&self, edge: usize, k: usize) -> Option<EdgePoint> {
+        let (m, h) = self.degrees;
+        let at = match (self.triangle, edge) {
+            (true, 0) => triangle_index(k, m.checked_sub(k)?),
+            (true, 1) => triangle_index(0, m.checked_sub(k)?),
+            (true, _) => triangle_index(m.checked_sub(k)?, 0),
+            (false, 0) => k,
+            (false, 1) => m * (h + 1) + k,
+            (false, 2) => k * (h + 1),
+            (false, _) => k * (h + 1) + h,
+        };
+        let weight = self.source.weights().map_or(Some(1), |w| Some(w.get(at)?.to_bits()))?;
+        Some((*self.source.points().get(at)?, weight))
+    }
+
+    fn edge_degree(&self, edge: usize) -> usize {
+        if self.triangle || edge >= 2 { self.degrees.0 } else { self.degrees.1 }
+    }
+}
+
+/// Whether two edges have the same control points, in the same direction or in opposite ones; weights up to a factor.
+fn are_equal(a: &Sheet<'_>, edge_a: usize, b: &Sheet<'_>, edge_b: usize, reversed: bool) -> bool {
+    let n = a.edge_degree(edge_a);
+    if n != b.edge_degree(edge_b) || n > MAX_DEGREE {
+        return false;
+    }
+    let pairs = |k: usize| Some((a.edge_point(edge_a, k)?, b.edge_point(edge_b, if reversed { n - k } else { k })?));
+    let Some((first_a, first_b)) = pairs(0) else { return false };
+    (0..=n).all(|k| {
+        pairs(k).is_some_and(|((p, w), (q, x))| {
+            p == q && i64::from(w) * i64::from(first_b.1) == i64::from(x) * i64::from(first_a.1)
+        })
+    })
+}
+
+impl Pair<'_> {
+    /// Where the search for the foot of a point on a patch begins: the nearest vertex of a coarse grid, if one is as near
+    /// as it must be for a point on the patch.
+    pub(super) fn coarse_foot(&self, side: usize, grid: &Grid<'_>, point: [i64; 3]) -> (Place, i64) {
+        let stride = grid.depth.saturating_sub(COARSE);
+        let n = 1_usize << (grid.depth - stride);
+        let target = point.map(|c| c >> 28);
+        let mut best = ([0; 2], i64::MAX);
+        for i in 0..=n {
+            for j in 0..=n {
+                if grid.triangle && i + j > n {
+                    continue;
+                }
+                let v = grid.vertex(i << stride, j << stride);
+                let far = v.iter().zip(target).fold(0_i64, |far, (c, t)| far.max((i64::from(*c) - t).abs()));
+                if far < best.1 {
+                    let shift = 48 - (grid.depth - stride);
+                    best = ([(i as i64) << shift, (j as i64) << shift], far);
+                }
+            }
+        }
+        let _ = side;
+        best
+    }
+
+    /// The spot of an edge's parameter if it lies on the other patch, up to `slack` of its domain.
+    fn on_surface(&self, side: usize, edge: usize, parameter: i64, near: Place, slack: i64) -> Option<Spot> {
+        let spot = self.edge_spot(side, edge, parameter, near)?;
+        let on =
+            spot.residual <= self.touching() && self.sheets[(1 - side) & 1].contains(spot.at[(1 - side) & 1], slack);
+        on.then_some(spot)
+    }
+}
+
+/// The largest side of a cell of the coarse grid, in units of 2^-16: no point of the patch is farther from a vertex.
+fn coarse_size(grid: &Grid<'_>) -> i64 {
+    let level = COARSE.min(grid.depth);
+    let mut size = 0;
+    for i in 0..1_usize << level {
+        for j in 0..1_usize << level {
+            if grid.exists(level, i, j) {
+                let b = grid.bounds(level, i, j);
+                size = (0..3).fold(size, |s: i64, k| s.max(i64::from(b[1][k]) - i64::from(b[0][k])));
+            }
+        }
+    }
+    // The surface may bulge past the vertices.
+    2 * size + 1
+}
+
+/// Parts of edges that lie on the other patch.
+struct Parts {
+    list: [Option<OnSurface>; MOST],
+    count: usize,
+}
+
+impl Parts {
+    fn get(&self, k: usize) -> Option<OnSurface> {
+        *self.list.get(k)?
+    }
+
+    fn push(&mut self, part: OnSurface) {
+        if let Some(place) = self.list.get_mut(self.count) {
+            *place = Some(part);
+            self.count += 1;
+        }
+    }
+}
+
+/// What was found before any mesh.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Edges {
+    /// A region where the surfaces coincide.
+    pub(super) overlap: bool,
+    /// More parts than there is room for, or a border of tangential edges that does not enclose a region.
+    pub(super) undecided: u32,
+}
+
+/// Finds and writes all of them.
+#[inline(never)]
+pub(super) fn find(
+    pair: &Pair<'_>,
+    grids: [&Grid<'_>; 2],
+    tolerance: Real,
+    out: &mut Output<'_>,
+) -> Result<Edges, IntersectError> {
+    let mut parts = Parts { list: [None; MOST], count: 0 };
+    let sizes = [coarse_size(grids[0]), coarse_size(grids[1])];
+    for side in 0..2 {
+        for edge in 0..pair.sheets[side & 1].edge_count() {
+            collect(pair, grids, sizes, (side, edge), &mut parts);
+        }
+    }
+    let mut found = Edges { overlap: false, undecided: u32::from(parts.count == MOST) };
+    found.overlap = regions(pair, tolerance, &mut parts, out)?;
+    for part in parts.list.iter().flatten().filter(|part| !part.used) {
+        let first = out.used;
+        out.emit(&part.ends[0])?;
+        run(pair, tolerance, part, false, out)?;
+        let kind = match (part.shared, part.tangential) {
+            (true, true) => CurveKind::SharedEdgeTangential,
+            (true, false) => CurveKind::SharedEdge,
+            _ => CurveKind::EdgeOnSurface,
+        };
+        let ends = part.ends.map(|spot| pair.end(spot.at));
+        out.finish(kind, false, ends, first)?;
+    }
+    Ok(found)
+}
+
+/// Adds the parts of one edge.
+fn collect(pair: &Pair<'_>, grids: [&Grid<'_>; 2], sizes: [i64; 2], (side, edge): (usize, usize), parts: &mut Parts) {
+    let other = 1 - side;
+    let sheet = &pair.sheets[side & 1];
+    let shared_with = (0..pair.sheets[other & 1].edge_count()).find_map(|e| {
+        let reversed = |r: &bool| are_equal(sheet, edge, &pair.sheets[other & 1], e, *r);
+        [false, true].into_iter().find(reversed).map(|r| (e, r))
+    });
+    // A degenerate edge is a point.
+    let ends = [0, ONE].map(|t| sheet.eval(sheet.edge_place(edge, t), 0).map(|j| j.point));
+    let centre = sheet.eval(sheet.edge_place(edge, ONE / 2), 0).map(|j| j.point);
+    if ends[0] == ends[1] && ends[0] == centre {
+        return;
+    }
+    let sample = |t: i64| -> Option<Spot> {
+        if let Some((e, reversed)) = shared_with {
+            let place = pair.sheets[other & 1].edge_place(e, if reversed { ONE - t } else { t });
+            return pair.shared_spot(side, edge, t, place);
+        }
+        let point = sheet.eval(sheet.edge_place(edge, t), 0)?.point;
+        let (near, far) = pair.coarse_foot(other, grids[other & 1], point);
+        if far > sizes[other & 1] { None } else { pair.on_surface(side, edge, t, near, BORDER) }
+    };
+    let mut samples = [None; SAMPLES as usize + 1];
+    for (k, place) in (0..).zip(samples.iter_mut()) {
+        *place = sample(ONE / SAMPLES * k);
+    }
+    let mut k = 0;
+    while k <= SAMPLES as usize {
+        let Some(Some(mut low)) = samples.get(k).copied() else {
+            k += 1;
+            continue;
+        };
+        let start = k;
+        let mut high = low;
+        while let Some(Some(next)) = samples.get(k + 1).copied() {
+            high = next;
+            k += 1;
+        }
+        let bounds = [start, k].map(|k| ONE / SAMPLES * k as i64);
+        if start > 0 {
+            low = last_on(pair, (side, edge), low, bounds[0], bounds[0] - ONE / SAMPLES);
+        }
+        if k < SAMPLES as usize {
+            high = last_on(pair, (side, edge), high, bounds[1], bounds[1] + ONE / SAMPLES);
+        }
+        k += 1;
+        let range = [low, high].map(|s| sheet.edge_parameter(edge, s.at[side & 1]));
+        // An edge that passes through the surface, or touches it, meets it in a point, not in a part: there, the distance
+        // grows from nothing to the tolerance, quickly.
+        let long = range[1] - range[0];
+        let firm = |t: i64| {
+            let near = super::trace::middle_place(low.at[other & 1], high.at[other & 1]);
+            let spot = pair.on_surface(side, edge, t, near, BORDER);
+            spot.is_some_and(|s| s.residual <= pair.touching().shl(-4))
+        };
+        if long < ONE && (long <= ONE >> 20 || !firm(range[0] + long / 8) || !firm(range[1] - long / 8)) {
+            continue;
+        }
+        let middle = (range[0] + range[1]) / 2;
+        let near = super::trace::middle_place(low.at[other & 1], high.at[other & 1]);
+        let Some(centre) = pair.on_surface(side, edge, middle, near, BORDER).or_else(|| sample(middle)) else {
+            continue;
+        };
+        let quarter = sample(range[0] + (range[1] - range[0]) / 4);
+        let tangential = [Some(low), Some(centre), quarter, Some(high)].iter().flatten().all(|s| s.sine <= PARALLEL);
+        let shared = shared_with.is_some();
+        let known = parts.list.iter().flatten().any(|p| {
+            let ends = |a: &Spot, b: &Spot| difference(a.point, b.point).norm() <= pair.extent.shl(-26);
+            let same = (ends(&p.ends[0], &low) && ends(&p.ends[1], &high))
+                || (ends(&p.ends[0], &high) && ends(&p.ends[1], &low));
+            same && p.side != side
+                && pair.sheets[p.side & 1].edge_at(centre.at[p.side & 1], 1 << 20) == Some(p.edge as u8)
+        });
+        if !known {
+            parts.push(OnSurface { side, edge, ends: [low, high], tangential, shared, used: false });
+        }
+    }
+}
+
+/// The last spot on the surface between a parameter on it and one that is not.
+fn last_on(pair: &Pair<'_>, (side, edge): (usize, usize), on: Spot, mut low: i64, mut high: i64) -> Spot {
+    let mut last = on;
+    for _ in 0..48 {
+        let middle = (low + high) >> 1;
+        match pair.on_surface(side, edge, middle, last.at[(1 - side) & 1], 4) {
+            Some(spot) => (low, last) = (middle, spot),
+            None => high = middle,
+        }
+        if (high - low).abs() <= 1 {
+            break;
+        }
+    }
+    last
+}
+
+impl Pair<'_> {
+    /// The spot of a shared edge, whose place on the other patch is known.
+    fn shared_spot(&self, side: usize, edge: usize, parameter: i64, place: Place) -> Option<Spot> {
+        let own = self.sheets[side & 1].edge_place(edge, parameter);
+        let at = if side == 0 { [own, place] } else { [place, own] };
+        let jets = self.jets(at, 1)?;
+        let mut spot = self.spot(at, &jets);
+        let [a, b] = self.sheets[side & 1].edge_direction(edge).map(Real::int);
+        spot.tangent = (jets[side & 1].first[0] * a + jets[side & 1].first[1] * b).unit();
+        spot.rates = both!(|s| super::newton::pull_back(&jets[s].first, jets[s].normal(), spot.tangent));
+        Some(spot)
+    }
+}
+
+/// Emits a part after its first point, or after its last one, backwards.
+fn run(
+    pair: &Pair<'_>,
+    tolerance: Real,
+    part: &OnSurface,
+    backwards: bool,
+    out: &mut Output<'_>,
+) -> Result<(), IntersectError> {
+    let locus = Locus::Edge { side: part.side, edge: part.edge };
+    let tracer = Tracer { pair, locus, forward: true, tolerance };
+    let [a, b] = if backwards { [part.ends[1].oriented(false), part.ends[0].oriented(false)] } else { part.ends };
+    // Eight pieces at first: a chord says little about a long edge.
+    let sheet = &pair.sheets[part.side & 1];
+    let [low, high] = [a, b].map(|s| sheet.edge_parameter(part.edge, s.at[part.side & 1]));
+    let mut from = a;
+    for k in 1..=8 {
+        let near = from.at[(1 - part.side) & 1];
+        let next = if k == 8 {
+            Some(b)
+        } else {
+            let spot = pair.edge_spot(part.side, part.edge, low + (high - low) / 8 * k, near);
+            spot.map(|s| s.oriented(!backwards))
+        };
+        let Some(next) = next else { continue };
+        tracer.connect(out, &from, &next, true)?;
+        from = next;
+    }
+    Ok(())
+}
+
+/// Joins tangential parts that close to the border of a region where the surfaces coincide.
+fn regions(pair: &Pair<'_>, tolerance: Real, parts: &mut Parts, out: &mut Output<'_>) -> Result<bool, IntersectError> {
+    let near = |a: &Spot, b: &Spot| difference(a.point, b.point).norm() <= pair.extent.shl(-24);
+    let mut any = false;
+    for start in 0..parts.count {
+        let mut order = [(0, false); MOST];
+        let Some(first) = parts.get(start).filter(|p| p.tangential && !p.used) else { continue };
+        let (mut length, mut end) = (1, first.ends[1]);
+        order[0] = (start, false);
+        while !near(&end, &first.ends[0]) && length < MOST {
+            let next = (0..parts.count).find_map(|k| {
+                let part = parts.get(k).filter(|p| p.tangential && !p.used)?;
+                if order.iter().take(length).any(|(used, _)| *used == k) {
+                    return None;
+                }
+                let [a, b] = part.ends;
+                if near(&a, &end) { Some((k, false, b)) } else { near(&b, &end).then_some((k, true, a)) }
+            });
+            let Some((k, backwards, other)) = next else { break };
+            if let Some(place) = order.get_mut(length) {
+                *place = (k, backwards);
+            }
+            length += 1;
+            end = other;
+        }
+        if length < 2 || !near(&end, &first.ends[0]) {
+            continue;
+        }
+        let (begin, unrefined) = (out.used, out.unrefined);
+        for (n, (k, backwards)) in order.iter().take(length).enumerate() {
+            let Some(part) = parts.get(*k) else { continue };
+            if n == 0 || !part.tangential {
+                out.emit(&part.ends[0])?;
+            } else {
+                // A corner of the border, with the tangent of the part that begins.
+                let spot = if *backwards { part.ends[1].oriented(false) } else { part.ends[0] };
+                out.emit(&spot)?;
+            }
+            let part = shortened(pair, &part, *backwards);
+            run(pair, tolerance, &part, *backwards, out)?;
+        }
+        if encloses(pair, out.points.get(begin..out.used).unwrap_or(&[])) {
+            out.finish(CurveKind::OverlapRegion, true, [super::End::None; 2], begin)?;
+            for (k, _) in order.iter().take(length) {
+                if let Some(Some(part)) = parts.list.get_mut(*k) {
+                    part.used = true;
+                }
+            }
+            any = true;
+        } else {
+            (out.used, out.unrefined) = (begin, unrefined);
+        }
+    }
+    Ok(any)
+}
+
+/// A part that ends 2^-34 of an edge early, so that a corner has a point for either of its tangents.
+fn shortened(pair: &Pair<'_>, part: &OnSurface, backwards: bool) -> OnSurface {
+    let sheet = &pair.sheets[part.side & 1];
+    let last = usize::from(!backwards);
+    let end = part.ends[last & 1];
+    let parameter =
+        sheet.edge_parameter(part.edge, end.at[part.side & 1]) + if backwards { ONE >> 34 } else { -(ONE >> 34) };
+    let spot = pair.edge_spot(part.side, part.edge, parameter, end.at[(1 - part.side) & 1]);
+    let mut out = *part;
+    out.ends[last & 1] = spot.unwrap_or(end);
+    out
+}
+
+/// Whether points amid a closed border lie on both surfaces.
+fn encloses(pair: &Pair<'_>, border: &[CurvePoint]) -> bool {
+    let share = Real::ONE / Real::int(border.len().max(1) as i64);
+    let mut sums = [Real::ZERO; 4];
+    for p in border {
+        for (sum, c) in sums.iter_mut().zip(p.places().as_flattened()) {
+            *sum = *sum + Real::new(*c, -48);
+        }
+    }
+    let [u, v, s, t] = sums.map(|sum| (sum * share).nearest(48));
+    let centre: [Place; 2] = [[u, v], [s, t]];
+    let coincide = |place: Place, near: Place| {
+        let Some(jet) = pair.sheets[0].eval(place, 1) else { return false };
+        let Some((_, under)) = pair.foot(1, near, jet.point) else { return false };
+        difference(jet.point, under.point).norm() <= pair.touching()
+    };
+    // Between the centre and points of the border.
+    let towards = (0..4).filter_map(|k| border.get(border.len() * k / 4)).map(|p| p.places());
+    coincide(centre[0], centre[1])
+        && towards.into_iter().all(|p| {
+            let [a, b] = both!(|s| super::trace::middle_place(centre[s], p[s]));
+            coincide(a, b)
+        })
+}
+
+impl Output<'_> {
+    /// Ends the curve whose points begin at `first`: measures it and enters it in the list.
+    pub(super) fn finish(
+        &mut self,
+        kind: CurveKind,
+        closed: bool,
+        ends: [super::End; 2],
+        first: usize,
+    ) -> Result<(), IntersectError> {
+        use fixed::types::{I2F30, I20F44};
+        let points = self.points.get(first..self.used).unwrap_or(&[]);
+        let mut length = Real::ZERO;
+        let pieces = points.windows(2).map(|w| (w[0], w[1]));
+        let last = points.last().zip(points.first()).filter(|_| closed && points.len() > 1);
+        for (p, q) in pieces.chain(last.map(|(p, q)| (*p, *q))) {
+            if p.bits() != q.bits() {
+                length = length + Piece::through(p.bits(), p.direction(), q.bits(), q.direction()).arc_length();
+            }
+        }
+        let curve = Curve {
+            kind,
+            closed,
+            ends,
+            first,
+            count: self.used - first,
+            length: I20F44::from_bits(length.nearest(44)),
+            min_sine: points.iter().fold(I2F30::ONE, |least, p| least.min(p.sine)),
+            residual: points.iter().fold(I20F44::ZERO, |most, p| most.max(p.residual)),
+            unrefined: self.unrefined,
+        };
+        self.unrefined = 0;
+        let given = self.curves.len();
+        let full = IntersectError::Buffer { buffer: super::Buffer::Curves, needed: given + 1, given };
+        *self.curves.get_mut(self.curve_count).ok_or(full)? = curve;
+        self.curve_count += 1;
+        Ok(())
+    }
+}
+
+const _: () = assert!(<I16F16 as Coord>::FRACTION_BITS == 16);

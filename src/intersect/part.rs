@@ -1,0 +1,391 @@
+//! Parts of a patch with rigorous bounds: hulls and cones of normals.
+//!
+//! A part's hull has coordinates in units of 2^-26, each within two units of the exact control point; every test below has
+//! that in hand. Cones: the derivatives of a part lie in the cone of the differences of its control points; with angles α
+//! and β about unit axes a and b, γ apart, |x × y − a × b| ≤ 2 sin(α/2) + 2 sin(β/2), so normals turn from a × b by an
+//! angle whose sine is at most that over sin γ (after Sederberg and Meyers 1988). A rational part has the derivatives
+//! (A' − S w')/w; moved to its centre, |S| is at most its radius, which widens the cone.
+
+use super::sheet::{Homogeneous, ONE, PARAMETER_BITS, Place, Sheet};
+use super::vector::V3;
+use crate::num::Real;
+use crate::patch::{MAX_DEGREE, triangle_index, triangle_len};
+
+const ROOM: usize = (MAX_DEGREE + 1) * (MAX_DEGREE + 1);
+/// Fraction bits of a hull.
+const HULL_BITS: i32 = 26;
+/// What a hull's coordinates may be wrong by, in its units, twice and rounded up.
+const SLACK: i64 = 6;
+
+/// A node of the quadtree over a patch's domain; the upper triangles are parts of triangular patches only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Region {
+    pub(super) level: u8,
+    pub(super) i: u16,
+    pub(super) j: u16,
+    pub(super) upper: bool,
+}
+
+impl Region {
+    pub(super) const ROOT: Self = Self { level: 0, i: 0, j: 0, upper: false };
+
+    /// The four quarters.
+    pub(super) fn quarters(self, triangle: bool) -> [Self; 4] {
+        let Self { level, i, j, upper } = self;
+        let part = |di: u16, dj: u16, upper| Self { level: level + 1, i: 2 * i + di, j: 2 * j + dj, upper };
+        match (triangle, upper) {
+            (false, _) => [part(0, 0, false), part(0, 1, false), part(1, 0, false), part(1, 1, false)],
+            (true, false) => [part(0, 0, false), part(0, 1, false), part(1, 0, false), part(0, 0, true)],
+            (true, true) => [part(1, 1, true), part(0, 1, true), part(1, 0, true), part(1, 1, false)],
+        }
+    }
+
+    fn place(self, di: u16, dj: u16) -> Place {
+        let shift = PARAMETER_BITS - i32::from(self.level);
+        [i64::from(self.i + di) << shift, i64::from(self.j + dj) << shift]
+    }
+
+    /// The corners of a triangular part, in the order of u, v, w.
+    fn corners(self) -> [Place; 3] {
+        if self.upper {
+            [self.place(0, 1), self.place(1, 0), self.place(1, 1)]
+        } else {
+            [self.place(1, 0), self.place(0, 1), self.place(0, 0)]
+        }
+    }
+
+    /// A place well inside.
+    pub(super) fn centre(self, triangle: bool) -> Place {
+        let size = ONE >> self.level;
+        let [u, v] = self.place(0, 0);
+        match (triangle, self.upper) {
+            (false, _) => [u + size / 2, v + size / 2],
+            (true, false) => [u + size / 3, v + size / 3],
+            (true, true) => [u + size - size / 3, v + size - size / 3],
+        }
+    }
+
+    /// Whether a place lies in the part's square, grown by a share of 2^-`grow` of its side.
+    pub(super) fn holds(self, place: Place, grow: u32) -> bool {
+        let size = ONE >> self.level;
+        let low = self.place(0, 0);
+        (0..2).all(|k| place[k] >= low[k] - (size >> grow) && place[k] <= low[k] + size + (size >> grow))
+    }
+}
+
+/// A part of a patch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    pub(super) region: Option<Region>,
+    triangle: bool,
+    degrees: (usize, usize),
+    count: usize,
+    hull: [[i64; 3]; ROOM],
+    /// Weights relative to the largest, 24 fraction bits; all alike for polynomial parts.
+    weights: [i32; ROOM],
+    low: [i64; 3],
+    high: [i64; 3],
+    pub(super) cone: Cone,
+    is_aimed: bool,
+}
+
+/// Directions of normals about an axis, up to sign.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cone {
+    pub(super) axis: V3,
+    /// The sine of the half angle; above 1 where nothing is known.
+    pub(super) sine: Real,
+}
+
+impl Cone {
+    const UNKNOWN: Self = Self { axis: V3::ZERO, sine: Real::int(2) };
+
+    /// Whether the half angle is below 45 degrees.
+    pub(super) fn is_narrow(&self) -> bool {
+        self.sine.square() < Real::power(-1)
+    }
+
+    /// Whether no normal of one is parallel to one of the other; both are narrow.
+    pub(super) fn is_apart(&self, other: &Self) -> bool {
+        let cosine = |sine: Real| (Real::ONE - sine.square()).sqrt();
+        let limit = cosine(self.sine) * cosine(other.sine) - self.sine * other.sine;
+        self.axis.dot(other.axis).abs() + Real::power(-16) < limit
+    }
+}
+
+fn lerp(a: &Homogeneous, b: &Homogeneous, t: i64) -> Homogeneous {
+    let mut out = [0; 4];
+    for k in 0..4 {
+        let product = (i128::from(b[k]) - i128::from(a[k])) * i128::from(t);
+        out[k] = a[k].wrapping_add(((product + (1 << (PARAMETER_BITS - 1))) >> PARAMETER_BITS) as i64);
+    }
+    out
+}
+
+/// A de Casteljau step of entry i.
+fn step(values: &mut [Homogeneous; MAX_DEGREE + 1], i: usize, t: i64) {
+    let i = i.min(MAX_DEGREE - 1);
+    values[i] = lerp(&values[i], &values[i + 1], t);
+}
+
+/// The control points of the part low ..= high of a curve: the blossom at low^(n−k) high^k.
+fn piece(values: &[Homogeneous; MAX_DEGREE + 1], n: usize, low: i64, high: i64) -> [Homogeneous; MAX_DEGREE + 1] {
+    let mut out = [[0; 4]; MAX_DEGREE + 1];
+    let mut start = *values;
+    // `start` holds the values after n − k steps at `low`; k steps at `high` remain.
+    for k in (0..=n.min(MAX_DEGREE)).rev() {
+        let mut rest = start;
+        for left in (1..=k).rev() {
+            for i in 0..left {
+                step(&mut rest, i, high);
+            }
+        }
+        out[k.min(MAX_DEGREE)] = rest[0];
+        for i in 0..k {
+            step(&mut start, i, low);
+        }
+    }
+    out
+}
+
+/// The blossom of a triangular net: `counts` steps at each of the corners.
+fn triangle_blossom(net: &[Homogeneous; ROOM], n: usize, corners: &[Place; 3], counts: [usize; 3]) -> Homogeneous {
+    let mut values = [[0; 4]; triangle_len(MAX_DEGREE)];
+    for (out, value) in values.iter_mut().zip(net).take(triangle_len(n)) {
+        *out = *value;
+    }
+    let mut degree = n;
+    for (corner, count) in corners.iter().zip(counts) {
+        let weights = [corner[0], corner[1], ONE - corner[0] - corner[1]];
+        for _ in 0..count {
+            degree = degree.saturating_sub(1);
+            for row in 0..=degree {
+                for k in 0..=row {
+                    let at = triangle_index(row - k, k);
+                    let parents = [at, at + row + 1, at + row + 2].map(|p| values.get(p).copied().unwrap_or([0; 4]));
+                    let mut sum = [0; 4];
+                    for (c, sum) in sum.iter_mut().enumerate() {
+                        let total = (0..3).fold(0, |s, p| s + i128::from(parents[p][c]) * i128::from(weights[p]));
+                        *sum = ((total + (1 << (PARAMETER_BITS - 1))) >> PARAMETER_BITS) as i64;
+                    }
+                    if let Some(value) = values.get_mut(at) {
+                        *value = sum;
+                    }
+                }
+            }
+        }
+    }
+    values[0]
+}
+
+impl Part {
+    /// No part.
+    pub(super) const BLANK: Self = Self {
+        region: None,
+        triangle: false,
+        degrees: (1, 1),
+        count: 0,
+        hull: [[0; 3]; ROOM],
+        weights: [0; ROOM],
+        low: [0; 3],
+        high: [0; 3],
+        cone: Cone::UNKNOWN,
+        is_aimed: false,
+    };
+
+    /// Becomes the part of a patch over a region.
+    #[inline(never)]
+    pub(super) fn load(&mut self, sheet: &Sheet<'_>, region: Region) {
+        let mut net = [[0; 4]; ROOM];
+        let (m, h) = (sheet.degrees.0.min(MAX_DEGREE), sheet.degrees.1.min(MAX_DEGREE));
+        let count = if sheet.triangle { triangle_len(m) } else { (m + 1) * (h + 1) };
+        if sheet.triangle {
+            let corners = region.corners();
+            for row in 0..=m {
+                for k in 0..=row {
+                    if let Some(out) = net.get_mut(triangle_index(row - k, k)) {
+                        *out = triangle_blossom(&sheet.net, m, &corners, [m - row, row - k, k]);
+                    }
+                }
+            }
+        } else {
+            let ([u, v], [x, y]) = (region.place(0, 0), region.place(1, 1));
+            let mut columns = [[[0; 4]; MAX_DEGREE + 1]; MAX_DEGREE + 1];
+            for i in 0..=m {
+                let mut row = [[0; 4]; MAX_DEGREE + 1];
+                for (out, value) in row.iter_mut().zip(sheet.net.iter().skip(i * (h + 1))).take(h + 1) {
+                    *out = *value;
+                }
+                for (column, value) in columns.iter_mut().zip(piece(&row, h, v, y)) {
+                    column[i.min(MAX_DEGREE)] = value;
+                }
+            }
+            for (j, column) in columns.iter().enumerate().take(h + 1) {
+                for (i, value) in piece(column, m, u, x).into_iter().enumerate().take(m + 1) {
+                    if let Some(out) = net.get_mut(i * (h + 1) + j) {
+                        *out = value;
+                    }
+                }
+            }
+        }
+        self.region = Some(region);
+        (self.triangle, self.degrees, self.count) = (sheet.triangle, (m, h), count);
+        self.weights = [1 << 24; ROOM];
+        (self.low, self.high) = ([i64::MAX; 3], [i64::MIN; 3]);
+        self.is_aimed = false;
+        self.project(&net, sheet);
+    }
+
+    /// Finds the cone of normals, once.
+    pub(super) fn aim(&mut self) {
+        if !self.is_aimed {
+            self.cone = self.normals();
+            self.is_aimed = true;
+        }
+    }
+
+    /// Control points to the hull, weights, the box.
+    fn project(&mut self, net: &[Homogeneous; ROOM], sheet: &Sheet<'_>) {
+        let heaviest = net.iter().take(self.count).fold(1, |most, c| most.max(c[3]));
+        for (at, c) in net.iter().enumerate().take(self.count) {
+            let mut point = [0; 3];
+            for k in 0..3 {
+                point[k] = if sheet.rational {
+                    (i128::from(c[k]) << HULL_BITS).checked_div(i128::from(c[3])).unwrap_or(0) as i64
+                } else {
+                    c[k] >> (sheet.bits - HULL_BITS)
+                };
+                self.low[k] = self.low[k].min(point[k]);
+                self.high[k] = self.high[k].max(point[k]);
+            }
+            self.hull[at] = point;
+            if sheet.rational {
+                let weight = (i128::from(c[3]) << 24).checked_div(i128::from(heaviest)).unwrap_or(0);
+                self.weights[at] = weight as i32;
+            }
+        }
+    }
+
+    fn points(&self) -> &[[i64; 3]] {
+        self.hull.get(..self.count).unwrap_or(&[])
+    }
+
+    /// The longest side of the box.
+    pub(super) fn size(&self) -> i64 {
+        (0..3).fold(0, |size, k| size.max(self.high[k] - self.low[k]))
+    }
+
+    /// The same in units.
+    pub(super) fn extent(&self) -> Real {
+        Real::new(self.size().max(1), -HULL_BITS)
+    }
+
+    pub(super) fn boxes_meet(&self, other: &Self) -> bool {
+        (0..3).all(|k| self.low[k] <= other.high[k] + SLACK && other.low[k] <= self.high[k] + SLACK)
+    }
+
+    /// Whether a plane across a direction lies between the hulls.
+    pub(super) fn is_apart_along(&self, other: &Self, direction: V3) -> bool {
+        let axis = direction.fixed(18);
+        let slack = SLACK * axis.iter().map(|c| c.abs()).sum::<i64>();
+        let span = |part: &Self| {
+            part.points().iter().fold((i64::MAX, i64::MIN), |(low, high), p| {
+                let d = p[0] * axis[0] + p[1] * axis[1] + p[2] * axis[2];
+                (low.min(d), high.max(d))
+            })
+        };
+        let ((a, b), (c, d)) = (span(self), span(other));
+        b + slack < c || d + slack < a
+    }
+
+    /// The cone of normals.
+    fn normals(&self) -> Cone {
+        let middle = three!(|k| (self.low[k] >> 1) + (self.high[k] >> 1));
+        // Weighted control points about the middle with at most 29 bits.
+        let size = self.size().max(1);
+        let shift = (64 - size.leading_zeros() as i32 - 28).max(0);
+        let mut points = [[0_i64; 3]; ROOM];
+        for ((out, p), w) in points.iter_mut().zip(self.points()).zip(&self.weights) {
+            for k in 0..3 {
+                out[k] = (((p[k] - middle[k]) >> shift) * i64::from(*w)) >> 24;
+            }
+        }
+        let radius = (size >> shift) + 1;
+        let Some(along_u) = self.directions(&points, radius, 0) else { return Cone::UNKNOWN };
+        let Some(along_v) = self.directions(&points, radius, 1) else { return Cone::UNKNOWN };
+        let across = along_u.0.cross(along_v.0);
+        let sine = across.norm();
+        if sine.is_zero() {
+            return Cone::UNKNOWN;
+        }
+        Cone { axis: across * (Real::ONE / sine), sine: (along_u.1 + along_v.1) / sine + Real::power(-20) }
+    }
+
+    /// The unit axis of the derivatives along u or v, and 2 sin of half their angle from it.
+    fn directions(&self, points: &[[i64; 3]; ROOM], radius: i64, along: usize) -> Option<(V3, Real)> {
+        let mut sum = [0_i64; 3];
+        self.differences(along, |a, b| {
+            let [p, q] = [a, b].map(|k| points.get(k).copied().unwrap_or([0; 3]));
+            sum = three!(|k| sum[k] + q[k] - p[k]);
+        });
+        let axis = V3::bits(sum, 0);
+        let length = axis.square();
+        if length.is_zero() {
+            return None;
+        }
+        let (mut worst, mut shortest, mut turn) = (Real::ZERO, Real::power(60), 0_i64);
+        let weight = |k: usize| self.weights.get(k).copied().unwrap_or(0);
+        self.differences(along, |a, b| turn = turn.max(i64::from((weight(a) - weight(b)).abs())));
+        // Two units of rounding a component, and what the weights' change adds.
+        let widening = Real::int(4 + if turn == 0 { 0 } else { 2 * ((radius * turn) >> 24) + 2 });
+        let inverse = Real::ONE / length.sqrt();
+        let mut bad = false;
+        self.differences(along, |a, b| {
+            let [p, q] = [a, b].map(|k| points.get(k).copied().unwrap_or([0; 3]));
+            let d = V3::bits(three!(|k| q[k] - p[k]), 0);
+            let forward = d.dot(axis) * inverse;
+            let aside = (d.square() - forward.square()).max(Real::ZERO);
+            let least = forward - widening;
+            if !least.is_positive() {
+                bad = true;
+                return;
+            }
+            worst = worst.max(aside / least.square());
+            shortest = shortest.min(least);
+        });
+        if bad {
+            return None;
+        }
+        let worst = worst.sqrt() + widening / shortest;
+        // tan α to 2 sin(α/2) = √(2 − 2 cos α).
+        let cosine = Real::ONE / (Real::ONE + worst.square()).sqrt();
+        Some((axis * inverse, ((Real::ONE - cosine).shl(1)).max(Real::ZERO).sqrt()))
+    }
+
+    /// Calls `visit` with the indices of neighbours along u or v.
+    fn differences(&self, along: usize, mut visit: impl FnMut(usize, usize)) {
+        let (m, h) = self.degrees;
+        if self.triangle {
+            for row in 0..m {
+                for k in 0..=row {
+                    let at = triangle_index(row - k, k);
+                    let towards = if along == 0 { at } else { at + row + 1 };
+                    let from = at + row + 2;
+                    if from < ROOM {
+                        visit(from, towards.min(ROOM - 1));
+                    }
+                }
+            }
+            return;
+        }
+        let (rows, columns, step) = if along == 0 { (m, h + 1, h + 1) } else { (m + 1, h, 1) };
+        for i in 0..rows {
+            for j in 0..columns {
+                let at = i * (h + 1) + j;
+                if at + step < ROOM {
+                    visit(at, at + step);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,251 @@
+//! Single points: where a curve meets a surface, and the nearest point of a surface.
+
+use super::curve::CurvePoint;
+use super::grid::{Grid, GridBox, GridVertex, vertex_count};
+use super::newton::{Pair, difference, pull_back, shifted};
+use super::sheet::{ONE, POINT_BITS, Place, Sheet};
+use super::vector::V3;
+use super::{Buffer, I16F48, I20F44, IntersectError, check_depth};
+use crate::geometry::Point3;
+use crate::num::{Coord, I16F16, Real};
+use crate::patch::{CurveNet, MAX_DEGREE, SurfaceNet, TensorNet};
+
+/// The point of a patch nearest to a given one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Projection {
+    /// Parameters: (u, v) of a triangle with w = 1 − u − v, (r, s) of a tensor-product patch.
+    pub parameters: [I16F48; 2],
+    /// The point of the patch.
+    pub position: Point3<I20F44>,
+    /// The distance of the given point from it.
+    pub distance: I20F44,
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for Projection {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let at = self.parameters.map(I16F48::to_bits);
+        let p = self.position.to_array().map(I20F44::to_bits);
+        defmt::write!(f, "{}/2^48: {}/2^44, distance {}/2^44", at, p, self.distance.to_bits());
+    }
+}
+
+/// Rounds of Newton's method.
+const LIMIT: u32 = 40;
+
+/// The grid of one patch in a caller's buffers.
+fn grid<'b>(
+    net: SurfaceNet<'_>,
+    depth: u32,
+    vertices: &'b mut [GridVertex],
+    boxes: &'b mut [GridBox],
+) -> Result<Grid<'b>, IntersectError> {
+    check_depth(depth)?;
+    let (needed, given) = (vertex_count(net.is_triangle(), depth), vertices.len());
+    if needed > given {
+        return Err(IntersectError::VertexBuffer { needed, given });
+    }
+    Grid::new(net, depth, vertices, boxes)
+}
+
+/// The point of a patch nearest to `point`.
+///
+/// The nearest vertex of a grid of 2^depth cells a side is where Newton's method begins; it minimises the distance with
+/// second derivatives, within the domain. What comes out is a local minimum, no farther than that vertex: the nearest point
+/// of all unless the patch has another minimum in a cell none of whose vertices is as near. Buffers: the vertices of
+/// one grid ([`Room`](super::Room) has those of two), one box or more.
+///
+/// # Errors
+/// [`IntersectError::Depth`], [`IntersectError::VertexBuffer`], [`IntersectError::BoxBuffer`].
+///
+/// # Examples
+/// ```
+/// use embedded_surfaces::{geometry::Point3, intersect::project, patch::{BilinearPatch, Surface}};
+///
+/// let floor = BilinearPatch::from_ints([[[0, 0, 0], [0, 60, 0]], [[80, 0, 0], [80, 60, 0]]])?;
+/// let (mut vertices, mut boxes) = ([[0; 3]; 81], [[[0; 3]; 2]; 85]);
+/// let nearest = project(floor.surface(), Point3::from_ints(20, 15, 7), 3, &mut vertices, &mut boxes)?;
+/// assert_eq!((nearest.distance.to_num::<i32>(), nearest.position.x.to_num::<i32>()), (7, 20));
+/// assert!(nearest.parameters.iter().all(|p| (*p - p.round()).abs() == 0.25));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn project(
+    net: SurfaceNet<'_>,
+    point: Point3<I16F16>,
+    depth: u32,
+    vertices: &mut [GridVertex],
+    boxes: &mut [GridBox],
+) -> Result<Projection, IntersectError> {
+    let grid = grid(net, depth, vertices, boxes)?;
+    let sheet = Sheet::new(net);
+    let target = point.to_array().map(Coord::bits);
+    let mut best = ([0; 2], i128::MAX);
+    let n = 1_usize << depth;
+    for i in 0..=n {
+        for j in 0..=if grid.triangle { n - i } else { n } {
+            let v = grid.vertex(i, j);
+            let square = (0..3).fold(0, |s, k| s + i128::from(i64::from(v[k]) - target[k]).pow(2));
+            if square < best.1 {
+                best = ([i, j].map(|k| (k as i64) << (48 - depth)), square);
+            }
+        }
+    }
+    let c = target.map(|t| t << (POINT_BITS - 16));
+    let place = descend(&sheet, best.0, c);
+    let position = sheet.eval(place, 0).map_or(c, |jet| jet.point);
+    Ok(Projection {
+        parameters: place.map(I16F48::from_bits),
+        position: Point3::from_array(position.map(I20F44::from_bits)),
+        distance: I20F44::from_bits(difference(position, c).norm().nearest(POINT_BITS)),
+    })
+}
+
+impl Sheet<'_> {
+    /// A place brought into the domain, to the nearest in the parameters.
+    fn clamped(&self, [u, v]: Place) -> Place {
+        if !self.triangle {
+            return [u.clamp(0, ONE), v.clamp(0, ONE)];
+        }
+        let over = (u + v - ONE).max(0);
+        let (u, v) = (u - over / 2, v - (over - over / 2));
+        let u = u.clamp(0, ONE);
+        [u, v.clamp(0, ONE - u)]
+    }
+}
+
+/// Minimises the distance from `c`, with a shorter step wherever it would grow.
+fn descend(sheet: &Sheet<'_>, start: Place, c: [i64; 3]) -> Place {
+    let far = |place: Place| sheet.eval(place, 0).map(|jet| difference(c, jet.point).square());
+    let (mut place, Some(mut least)) = (start, far(start)) else { return start };
+    for _ in 0..LIMIT {
+        let Some(jet) = sheet.eval(place, 2) else { return place };
+        let d = difference(c, jet.point);
+        let g = jet.first.map(|s| s.dot(d));
+        let [a, b, e] = [
+            jet.first[0].square() - jet.second[0].dot(d),
+            jet.first[0].dot(jet.first[1]) - jet.second[1].dot(d),
+            jet.first[1].square() - jet.second[2].dot(d),
+        ];
+        let determinant = a * e - b * b;
+        let newton = if a.is_positive() && determinant.is_positive() {
+            [(g[0] * e - g[1] * b) / determinant, (g[1] * a - g[0] * b) / determinant]
+        } else {
+            pull_back(&jet.first, jet.normal(), d)
+        };
+        // On a border the other parameter moves alone; along the diagonal, both.
+        let mut candidates = [newton, [g[0] / a, Real::ZERO], [Real::ZERO, g[1] / e], [Real::ZERO; 2]];
+        let diagonal = a + e - b.shl(1);
+        if sheet.triangle && diagonal.is_positive() {
+            let t = (g[0] - g[1]) / diagonal;
+            candidates[3] = [t, -t];
+        }
+        let mut better = None;
+        for step in candidates {
+            for shift in [0, -2, -5] {
+                let next = sheet.clamped(shifted(place, step.map(|s| s.shl(shift))));
+                if let Some(square) = far(next).filter(|s| *s < least) {
+                    (better, least) = (Some(next), square);
+                    break;
+                }
+            }
+        }
+        let Some(next) = better else { return place };
+        place = next;
+    }
+    place
+}
+
+/// Finds the points where a curve meets a surface: their number; parameters t on the curve, as A's first parameter, and
+/// (u, v) on the surface, as B's. They are in the order of t; tangents are the curve's.
+///
+/// The curve's chords over 2^depth steps are cut with the surface's grid of that depth, exactly, and each cut is refined
+/// by Newton's method in three unknowns. A curve that touches the surface, or crosses it twice within a step and a cell, may
+/// be missed; use [`intersect`](super::intersect) for certainty about surfaces. Stack: 6 KB. Buffers as of
+/// [`project`].
+///
+/// # Errors
+/// [`IntersectError::Buffer`] for more points than there is room for, else as of [`project`].
+///
+/// # Examples
+/// ```
+/// use embedded_surfaces::intersect::{CurvePoint, curve_points};
+/// use embedded_surfaces::patch::{BilinearPatch, Curve, Surface};
+///
+/// let floor = BilinearPatch::from_ints([[[0, 0, 0], [0, 60, 0]], [[80, 0, 0], [80, 60, 0]]])?;
+/// let line = Curve::<2>::from_ints([[20, 20, -10], [40, 40, 10]])?;
+/// let (mut vertices, mut boxes) = ([[0; 3]; 81], [[[0; 3]; 2]; 85]);
+/// let mut found = [CurvePoint::BLANK; 4];
+/// let count = curve_points(line.net(), floor.surface(), 3, &mut vertices, &mut boxes, &mut found)?;
+/// assert_eq!((count, found[0].position.x.to_num::<i32>()), (1, 30));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn curve_points(
+    curve: CurveNet<'_>,
+    net: SurfaceNet<'_>,
+    depth: u32,
+    vertices: &mut [GridVertex],
+    boxes: &mut [GridBox],
+    out: &mut [CurvePoint],
+) -> Result<usize, IntersectError> {
+    let grid = grid(net, depth, vertices, boxes)?;
+    // The curve as one row of a ruled patch: t is its first parameter, the second has no length.
+    let mut points = [Point3::ORIGIN; 2 * (MAX_DEGREE + 1)];
+    for (pair, point) in points.chunks_exact_mut(2).zip(curve.points()) {
+        pair.fill(*point);
+    }
+    let count = 2 * curve.points().len();
+    let ruled = TensorNet::of_checked((curve.degree(), 1), points.get(..count).unwrap_or(&points));
+    let pair = Pair::new([SurfaceNet::Tensor(ruled), net]);
+    let steps = 1_i64 << depth;
+    let mut used = 0;
+    let point_at = |k: i64| {
+        let jet = pair.sheets[0].eval([k << (48 - depth), 0], 0);
+        jet.map_or([0; 3], |jet| jet.point.map(|c| ((c + (1 << 27)) >> 28) as i32))
+    };
+    let mut from = point_at(0);
+    for k in 0..steps {
+        let to = point_at(k + 1);
+        let mut found = [None; 16];
+        super::descent::pierce(&grid, [from, to], |share, place| {
+            let t = (k << (48 - depth)) + (share * Real::power(-(depth as i32))).nearest(48);
+            let spot = pair.on_edge(0, 2, [[t, 0], place]);
+            let close = |p: i64, q: i64| (p - q).abs() <= 1 << 20;
+            if let Some(spot) = spot.filter(|s| pair.sheets[1].contains(s.at[1], super::trace::BORDER)) {
+                let known =
+                    |s: &super::newton::Spot| close(s.at[0][0], spot.at[0][0]) && close(s.at[1][0], spot.at[1][0]);
+                let is_new = !found.iter().flatten().any(known);
+                if let Some(free) = found.iter_mut().find(|f| f.is_none()).filter(|_| is_new) {
+                    *free = Some(spot);
+                }
+            }
+        })?;
+        for spot in found.iter_mut().flatten() {
+            let jet = pair.sheets[0].eval(spot.at[0], 1);
+            spot.tangent = jet.map_or(V3::ZERO, |jet| jet.first[0].unit());
+            let point = CurvePoint::of(spot);
+            let known = out.iter().take(used).any(|p| {
+                let [a, b] = [p.places(), spot.at];
+                (0..2).all(|s| (0..2).all(|k| (a[s][k] - b[s][k]).abs() <= 1 << 20))
+            });
+            if known {
+                continue;
+            }
+            let given = out.len();
+            let full = IntersectError::Buffer { buffer: Buffer::Points, needed: given + 1, given };
+            *out.get_mut(used).ok_or(full)? = point;
+            used += 1;
+        }
+        from = to;
+    }
+    // In the order of t: few points, by insertion.
+    for i in 1..used {
+        for j in (1..=i).rev() {
+            if let Some([a, b]) = out.get_mut(j - 1..=j)
+                && b.parameters[0][0] < a.parameters[0][0]
+            {
+                core::mem::swap(a, b);
+            }
+        }
+    }
+    Ok(used)
+}
