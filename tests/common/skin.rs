@@ -173,19 +173,34 @@ impl Seam {
         Self { c: own, l: core::array::from_fn(|i| at(left, c, [4 - i, i, 1])), r, closed: own == other }
     }
 
+    /// The derivatives along the edge, into the left face and into the right one.
+    fn derivatives(&self, t: f64) -> [V3; 3] {
+        let bernstein = |i: usize| [1.0, 4.0, 6.0, 4.0, 1.0][i] * t.powi(i as i32) * (1.0 - t).powi(4 - i as i32);
+        let sum = |row: &[V3], shift: usize| {
+            let terms = (0..5).map(|i| times(minus(row[i + shift], self.c[i]), bernstein(i)));
+            terms.fold([0.0; 3], plus)
+        };
+        [sum(&self.c, 1), sum(&self.l, 0), sum(&self.r, 0)]
+    }
+
     /// The largest angle between the normals at these many places.
     pub(crate) fn angle(&self, samples: usize) -> f64 {
         let angle = |t: f64| {
-            let bernstein = |i: usize| [1.0, 4.0, 6.0, 4.0, 1.0][i] * t.powi(i as i32) * (1.0 - t).powi(4 - i as i32);
-            let sum = |row: &[V3], shift: usize| {
-                let terms = (0..5).map(|i| times(minus(row[i + shift], self.c[i]), bernstein(i)));
-                terms.fold([0.0; 3], plus)
-            };
-            let (along, left, right) = (sum(&self.c, 1), sum(&self.l, 0), sum(&self.r, 0));
+            let [along, left, right] = self.derivatives(t);
             let (p, q) = (unit(cross(along, left)), unit(cross(right, along)));
             length(cross(p, q)).atan2(dot(p, q))
         };
         (0..=samples).map(|s| angle(s as f64 / samples as f64)).fold(0.0, f64::max)
+    }
+
+    /// How near the edge comes to a place without a normal: the least length of a normal over that at the ends.
+    pub(crate) fn pinch(&self, samples: usize) -> f64 {
+        let normal = |t: f64| {
+            let [along, left, right] = self.derivatives(t);
+            length(cross(along, left)).min(length(cross(right, along)))
+        };
+        let least = (0..=samples).map(|s| normal(s as f64 / samples as f64)).fold(f64::MAX, f64::min);
+        least / normal(0.0).max(normal(1.0))
     }
 
     /// The largest of the six Bernstein coefficients of S + κT + mE, κ and m linear between what the tangents at the ends
