@@ -2,29 +2,16 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 #![allow(clippy::disallowed_types, clippy::float_arithmetic, clippy::float_cmp, reason = "an oracle in f64")]
 
+#[path = "common/golden.rs"]
+#[allow(dead_code)]
+mod tool;
+
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use std::sync::OnceLock;
-
-/// The tool, beside this test's own executable; built where only this test was asked for.
-fn tool() -> &'static Path {
-    static TOOL: OnceLock<PathBuf> = OnceLock::new();
-    TOOL.get_or_init(|| {
-        let test = std::env::current_exe().unwrap();
-        let tool = test.parent().unwrap().with_file_name("examples").join("golden");
-        if !tool.exists() {
-            let target = test.ancestors().nth(3).unwrap();
-            let mut cargo = Command::new(env!("CARGO"));
-            cargo.args(["build", "--example", "golden", "--target-dir"]).arg(target);
-            assert!(cargo.current_dir(env!("CARGO_MANIFEST_DIR")).status().unwrap().success());
-        }
-        tool
-    })
-}
+use std::process::Output;
 
 fn golden(case: &Path) -> Output {
-    Command::new(tool()).arg("g1").arg(case).output().unwrap()
+    tool::golden("g1", case, &[])
 }
 
 /// The result of a case written to a file of its own.

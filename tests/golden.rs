@@ -6,30 +6,13 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 #![allow(clippy::disallowed_types, clippy::float_arithmetic, reason = "an oracle in f64")]
 
+#[path = "common/golden.rs"]
+mod tool;
+
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use std::sync::OnceLock;
-
-/// The tool, beside this test's own executable; built where only this test was asked for.
-fn tool() -> &'static Path {
-    static TOOL: OnceLock<PathBuf> = OnceLock::new();
-    TOOL.get_or_init(|| {
-        let test = std::env::current_exe().unwrap();
-        let tool = test.parent().unwrap().with_file_name("examples").join("golden");
-        if !tool.exists() {
-            let target = test.ancestors().nth(3).unwrap();
-            let mut cargo = Command::new(env!("CARGO"));
-            cargo.args(["build", "--example", "golden", "--target-dir"]).arg(target);
-            assert!(cargo.current_dir(env!("CARGO_MANIFEST_DIR")).status().unwrap().success());
-        }
-        tool
-    })
-}
-
-fn golden(command: &str, case: &Path, extra: &[&str]) -> Output {
-    Command::new(tool()).arg(command).arg(case).args(extra).output().unwrap()
-}
+use tool::golden;
 
 /// A case written to a file of its own.
 fn file(name: &str, text: &str) -> PathBuf {
@@ -275,7 +258,7 @@ fn what_is_wrong_exits_with_2_and_names_the_field() {
         assert!(output.stdout.is_empty());
     }
     for arguments in [["lattice", "no-such-file.json"], ["conquer", "x.json"]] {
-        let output = Command::new(tool()).args(arguments).output().unwrap();
+        let output = Command::new(tool::path()).args(arguments).output().unwrap();
         assert_eq!(output.status.code(), Some(2));
         assert!(!output.stderr.is_empty());
     }
