@@ -105,9 +105,22 @@ impl PieceSlopes {
         Self { x: slopes(&net, 0), y: slopes(&net, 1) }
     }
 
+    /// The largest bound along any axis, in 2^-9 unit, for a tensor-product net: at least the degree times every difference
+    /// of neighbours.
+    pub(crate) fn steepest(&self, net: SurfaceNet<'_>) -> u32 {
+        let (z, xy) = (slopes(&net, 2), self.largest());
+        z[0].max(z[1]).max(xy[0]).max(xy[1])
+    }
+
     /// The larger of x and y, for each family of net edges.
     fn largest(&self) -> Slopes {
         core::array::from_fn(|d| self.x[d].max(self.y[d]))
+    }
+
+    /// Whether a tensor-product piece takes more steps along s than along r.
+    pub(crate) fn is_longer_along_s(&self) -> bool {
+        let [a, b, _] = self.largest();
+        b > a
     }
 
     /// No hole-free lattice of a polynomial tensor-product piece has fewer points.

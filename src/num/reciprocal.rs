@@ -77,6 +77,12 @@ pub(crate) const fn reciprocal(value: u32) -> (u32, u32) {
     (invert(value << (zeros & 31) >> 16), zeros)
 }
 
+/// The upper half of a product, rounded down.
+#[inline(always)]
+pub(crate) const fn high(a: i32, b: i32) -> i32 {
+    ((a as i64 * b as i64) >> 32) as i32
+}
+
 /// ⌊a·b/2^17⌋ for b below 2^16.
 #[inline(always)]
 pub(crate) const fn multiply(a: i32, b: u32) -> i32 {

@@ -2,7 +2,7 @@
 
 use super::depth::DepthWindow;
 use super::light::{Light, Side, normal_on};
-use super::pen::{Brush, Spot};
+use super::pen::{Brush, Spot, Stain};
 use super::style::Style;
 use super::tangents::Tangents;
 use super::tile::{Fragment, Paint};
@@ -15,6 +15,19 @@ pub(super) struct Shading<'a> {
     pub(super) window: DepthWindow,
 }
 
+impl Shading<'_> {
+    /// The level of a point at a depth, with the normal that `normal` finds.
+    #[inline(always)]
+    pub(super) fn level(&self, depth: u16, normal: impl FnOnce() -> [i32; 3]) -> u8 {
+        match self.style {
+            Style::Shaded => self.light.level(normal()),
+            Style::Glossy(gloss) => self.light.glossy(normal(), gloss),
+            Style::DepthCued { near, far } => self.window.cue(depth, near, far),
+            _ => u8::MAX,
+        }
+    }
+}
+
 /// A paint, the number of the patch that it is for, and the colours of a tile.
 pub(super) struct Canvas<'c, P: Paint> {
     pub(super) paint: &'c P,
@@ -23,9 +36,15 @@ pub(super) struct Canvas<'c, P: Paint> {
 }
 
 impl<P: Paint> Canvas<'_, P> {
-    pub(super) fn set(&mut self, spot: &Spot, shade: u8) {
-        if let Some(stored) = self.colour.get_mut(spot.index) {
-            *stored = self.paint.pixel(Fragment { x: spot.x, y: spot.y, patch: self.patch, shade });
+    fn set(&mut self, spot: &Spot, shade: u8) {
+        self.stain(spot.index, [spot.x, spot.y], shade);
+    }
+}
+
+impl<P: Paint> Stain for Canvas<'_, P> {
+    fn stain(&mut self, index: usize, [x, y]: [i32; 2], shade: u8) {
+        if let Some(stored) = self.colour.get_mut(index) {
+            *stored = self.paint.pixel(Fragment { x, y, patch: self.patch, shade });
         }
     }
 }
@@ -34,8 +53,7 @@ impl<P: Paint> Canvas<'_, P> {
 impl<P: Paint> Brush for Canvas<'_, P> {
     fn dab(&mut self, spot: Spot, _: Option<Option<[i32; 3]>>) {
         self.set(&spot, u8::MAX);
-    }
-}
+    }}
 
 /// Colours the points of a piece.
 pub(super) struct Shader<'s, 'c, P: Paint> {
@@ -49,17 +67,10 @@ pub(super) struct Shader<'s, 'c, P: Paint> {
 
 impl<P: Paint> Brush for Shader<'_, '_, P> {
     fn dab(&mut self, spot: Spot, known: Option<Option<[i32; 3]>>) {
-        let (Shading { light, style, window }, side) = (self.shading, self.side);
-        let mut found = || {
+        let side = self.side;
+        let shade = self.shading.level(spot.depth, || {
             let known = known.unwrap_or_else(|| normal_on(side, self.tangents.at(spot.i, spot.j)));
             known.or_else(|| normal_on(side, self.tangents.inside(spot.i, spot.j))).unwrap_or([0, 0, -1])
-        };
-        let shade = match style {
-            Style::Shaded => light.level(found()),
-            Style::Glossy(gloss) => light.glossy(found(), gloss),
-            Style::DepthCued { near, far } => window.cue(spot.depth, near, far),
-            _ => u8::MAX,
-        };
+        });
         self.canvas.set(&spot, shade);
-    }
-}
+    }}

@@ -69,6 +69,7 @@
 //! 1/64 further inside is taken, for a rational piece that of its control net without weights.
 
 mod brush;
+mod cubic;
 mod cull;
 mod depth;
 mod frame;

@@ -32,7 +32,12 @@ pub(super) struct Spot {
 /// What colours points that are seen.
 pub(super) trait Brush {
     /// Colours a point; `normal` comes from a walk that knows it, `None` there where the tangents span no plane.
-    fn dab(&mut self, spot: Spot, normal: Option<Option<[i32; 3]>>);
+    fn dab(&mut self, spot: Spot, normal: Option<Option<[i32; 3]>>);}
+
+/// What sets the colour of a pixel by its level.
+pub(super) trait Stain {
+    /// Colours the pixel (x, y), number `index` of the tile.
+    fn stain(&mut self, index: usize, at: [i32; 2], shade: u8);
 }
 
 /// Draws the points of one lattice into a tile. One type for all colours: what a walker is made for.

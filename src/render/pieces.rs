@@ -14,7 +14,7 @@ use crate::subdivide::{Cut, Direction, Half, Quarter, Source, part_net};
 
 /// The most points of a polynomial tensor-product piece: about what a bicubic can have with 32-bit accumulators, which
 /// take half the instructions of wider ones on a Cortex-M.
-const LARGEST: u64 = 300;
+const LARGEST: u64 = 600;
 
 /// What setting up another piece counts for, in points.
 const SETUP: u64 = 24;
@@ -37,13 +37,23 @@ pub(super) const fn depth(points: usize) -> usize {
     room(points).1
 }
 
+/// What is known of a piece.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Wanted {
+    No,
+    /// Its parts are to be asked for.
+    Yes,
+    /// It faces the viewer everywhere, and so do its parts.
+    Front,
+}
+
 /// What is done with pieces.
 pub(super) trait Pieces {
-    /// Whether a piece is looked at at all.
-    fn wants(&mut self, piece: SurfaceNet<'_>) -> bool;
+    /// Whether a piece is looked at at all; `is_front`: it is a part of one that faces the viewer everywhere.
+    fn wants(&mut self, piece: SurfaceNet<'_>, is_front: bool) -> Wanted;
 
     /// A piece that is not split any further, and room for as many points as it has.
-    fn piece(&mut self, piece: SurfaceNet<'_>, sampling: Sampling, room: &mut [Point3]);
+    fn piece(&mut self, piece: SurfaceNet<'_>, sampling: Sampling, slopes: &PieceSlopes, room: &mut [Point3]);
 
     /// Called when a piece is split.
     fn split(&mut self);
@@ -113,6 +123,7 @@ fn with_room<S: Surface, const LEN: usize, const WEIGHTS: usize, const SLOTS: us
         path: [(Split::R, 0); DEPTH],
         depth: 0,
         deepest: SLOTS - 1,
+        front: 0,
     };
     tree.walk::<S>(pieces);
 }
@@ -151,6 +162,8 @@ struct Tree<'n, 's> {
     path: [(Split, u8); DEPTH],
     depth: usize,
     deepest: usize,
+    /// A bit for each depth: whether the piece there is known to face the viewer.
+    front: u16,
 }
 
 impl Tree<'_, '_> {
@@ -171,10 +184,14 @@ impl Tree<'_, '_> {
     /// Draws the current piece, or says how it is split.
     fn visit<S: Surface>(&mut self, pieces: &mut dyn Pieces) -> Option<Split> {
         let (depth, deepest) = (self.depth, self.deepest);
-        let (piece, slot, weight_slot) = self.current();
-        if !pieces.wants(piece) {
+        // That of the piece above stands one bit lower.
+        let (own, is_front) = (2_u16 << depth, self.front >> depth & 1 == 1);
+        let wanted = pieces.wants(self.current().0, is_front);
+        self.front = if wanted == Wanted::Front { self.front | own } else { self.front & !own };
+        if wanted == Wanted::No {
             return None;
         }
+        let (piece, slot, weight_slot) = self.current();
         let slopes = PieceSlopes::of(piece);
         let (triangles, rational) =
             (S::SHAPE.triangles && piece.is_triangle(), S::SHAPE.rational && piece.weights().is_some());
@@ -182,7 +199,7 @@ impl Tree<'_, '_> {
         // Up to degree 3 any legal net fits 128 bits: (n_r·n_s)^3·2^7·(2K+1) with n below 2^19.
         let fits_always = direct && (S::SHAPE.degree <= 3 || degree(&piece) <= 3);
         if depth < deepest && fits_always && slopes.least_points() > LARGEST {
-            return Some(longer(piece));
+            return Some(if slopes.is_longer_along_s() { Split::S } else { Split::R });
         }
         let sampling = slopes.sampling::<S>(piece, true);
         let split = if depth == deepest {
@@ -191,12 +208,13 @@ impl Tree<'_, '_> {
             // Both directions at once: what the check of the scene counts on.
             Some(if triangles { Split::Triangles } else { Split::Squares })
         } else if direct {
-            (sampling.points(false) > LARGEST).then(|| longer(piece))
+            (sampling.points(false) > LARGEST)
+                .then(|| if slopes.is_longer_along_s() { Split::S } else { Split::R })
         } else {
             split_that_pays::<S>(source(piece, depth), sampling, slot, weight_slot)
         };
         if split.is_none() {
-            pieces.piece(piece, sampling, slot);
+            pieces.piece(piece, sampling, &slopes, slot);
         }
         split
     }

@@ -1,7 +1,8 @@
 //! Scenes: what is drawn, checked once.
 
 use super::brush::{Canvas, Shader, Shading};
-use super::cull::faces_away;
+use super::cubic;
+use super::cull::{Facing, facing};
 use super::depth::DepthWindow;
 use super::grid::{self, Facet, Facets, Filler, Recorder, Segments};
 use super::light::{Light, Side};
@@ -9,13 +10,13 @@ use super::light::{Light, Side};
 use super::lines::any_family;
 use super::lines::{LineDrawing, families, family};
 use super::pen::{Ink, Pen, Rows};
-use super::pieces::{Pieces, each_piece};
+use super::pieces::{Pieces, Wanted, each_piece};
 use super::plan::{Plan, check_pieces, each_lattice};
 use super::style::{Cull, Fill, Style};
 use super::tangents::Tangents;
 use super::tile::{Area, Paint, Tile};
 use super::{RenderError, Statistics};
-use crate::forward::{Fraction, Kind, LatticeError, Sampling};
+use crate::forward::{Fraction, Kind, LatticeError, PieceSlopes, Sampling};
 use crate::geometry::{Bounds, Point3};
 use crate::num::{Coord, I16F16};
 use crate::patch::{Surface, SurfaceNet};
@@ -350,16 +351,42 @@ struct Filling<'s, 'b, 't, S, P: Paint> {
 }
 
 impl<S: Surface, P: Paint> Filling<'_, '_, '_, S, P> {
-    /// Draws one lattice of a piece.
-    fn lattice(&mut self, piece: SurfaceNet<'_>, plan: &Plan<'_>, halvings: u32) {
-        let (area, colour, depth) = self.tile.parts();
-        let (form, window) = (&plan.form, self.shading.window.halved(halvings));
-        // A tensor-product lattice that is turned has its tangents exchanged.
-        let side = match (self.cull, self.inward != (form.kind == Kind::Tensor && form.turn() == 1)) {
+    /// Which way normals point; a tensor-product lattice that is turned has its tangents exchanged.
+    fn side(&self, is_turned: bool) -> Side {
+        match (self.cull, self.inward != is_turned) {
             (Cull::None, _) => Side::Viewer,
             (Cull::Back, false) => Side::Along,
             (Cull::Back, true) => Side::Against,
+        }
+    }
+
+    /// Draws a piece of degree 3 or less.
+    #[inline(never)]
+    fn cubic(&mut self, net: SurfaceNet<'_>, sampling: Sampling, slopes: &PieceSlopes) {
+        let turn = slopes.turn(false, sampling.centres);
+        let piece = cubic::Piece::new(net, sampling, turn, slopes.steepest(net));
+        let side = self.side(turn == 1);
+        let (area, colour, depth) = self.tile.parts();
+        let mut target = cubic::Target {
+            area,
+            depth,
+            shading: self.shading,
+            ink: self.ink,
+            side,
+            points: &mut self.statistics.points,
+            stain: &mut Canvas { paint: self.paint, patch: self.patch, colour },
         };
+        piece.draw(false, &mut target);
+        if sampling.centres {
+            piece.draw(true, &mut target);
+        }
+    }
+
+    /// Draws one lattice of a piece.
+    fn lattice(&mut self, piece: SurfaceNet<'_>, plan: &Plan<'_>, halvings: u32) {
+        let (form, window) = (&plan.form, self.shading.window.halved(halvings));
+        let side = self.side(form.kind == Kind::Tensor && form.turn() == 1);
+        let (area, colour, depth) = self.tile.parts();
         let mut shader = Shader {
             shading: self.shading,
             canvas: Canvas { paint: self.paint, patch: self.patch, colour },
@@ -382,12 +409,25 @@ impl<S: Surface, P: Paint> Filling<'_, '_, '_, S, P> {
 }
 
 impl<S: Surface, P: Paint> Pieces for Filling<'_, '_, '_, S, P> {
-    fn wants(&mut self, piece: SurfaceNet<'_>) -> bool {
-        meets(piece, &self.tile.area()) && (self.cull == Cull::None || !faces_away(&piece, self.inward))
+    fn wants(&mut self, piece: SurfaceNet<'_>, is_front: bool) -> Wanted {
+        if !meets(piece, &self.tile.area()) {
+            return Wanted::No;
+        }
+        if self.cull == Cull::None || is_front {
+            return Wanted::Front;
+        }
+        match facing(&piece, self.inward) {
+            Facing::Away => Wanted::No,
+            Facing::Viewer => Wanted::Front,
+            Facing::Unknown => Wanted::Yes,
+        }
     }
 
-    fn piece(&mut self, piece: SurfaceNet<'_>, sampling: Sampling, room: &mut [Point3]) {
+    fn piece(&mut self, piece: SurfaceNet<'_>, sampling: Sampling, slopes: &PieceSlopes, room: &mut [Point3]) {
         self.statistics.pieces += 1;
+        if cubic::suits::<S>(&piece) {
+            return self.cubic(piece, sampling, slopes);
+        }
         // Checked in `new`, so it cannot fail here.
         let _ = each_lattice::<S>(piece, sampling, room, &mut |plan, halvings| self.lattice(piece, plan, halvings));
     }

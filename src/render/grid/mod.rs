@@ -31,7 +31,7 @@ pub(super) use counts::Segments;
 pub(super) use list::{Facets, Recorder};
 pub(super) use quad::{Filler, Quad};
 
-use super::cull::faces_away;
+use super::cull::{Facing, facing};
 use super::depth::DepthWindow;
 use super::plan::Plan;
 use super::style::Style;
@@ -95,7 +95,7 @@ pub(super) fn facets(
     (light, style, window): (&Light, Style, DepthWindow),
     output: &mut dyn Output,
 ) -> Statistics {
-    if patch.inward.is_some_and(|inward| faces_away(&patch.net, inward)) {
+    if patch.inward.is_some_and(|inward| facing(&patch.net, inward) == Facing::Away) {
         return Statistics::default();
     }
     // Checked with the scene, so it cannot fail here.
