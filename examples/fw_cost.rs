@@ -15,7 +15,7 @@
 #[path = "board/counter.rs"]
 mod counter;
 #[path = "data/frame.rs"]
-#[allow(dead_code, reason = "the file format is for `fw_frame`")]
+#[allow(dead_code, reason = "the file format and the halves are for `fw_frame`")]
 pub(crate) mod frame;
 #[path = "board/run.rs"]
 mod run;
@@ -87,7 +87,7 @@ fn start<'a, const GRID: bool>(
     list: Option<(&'a mut [Facet], &'a mut [u16])>,
 ) -> Option<Picture<'a>> {
     frame::place(map, patches)?;
-    let frame = if GRID { frame::grid(patches, rows)? } else { frame::exact(patches, rows)? };
+    let frame = if GRID { frame::grid(patches, AREA, rows)? } else { frame::exact(patches, AREA, rows)? };
     match list {
         Some((facets, links)) => frame.with_facets(facets, links).ok(),
         None => Some(frame),

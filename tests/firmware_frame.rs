@@ -15,8 +15,8 @@ fn expected(grid: bool) -> Vec<u8> {
     let mut bytes = frame::PPM_HEAD.to_vec();
     let row = |row: &[_]| bytes.extend_from_slice(&frame::ppm_row(row));
     let drawn = if grid {
-        const LINKS: usize = frame::FACETS + frame::BANDS;
-        frame::draw::<true, _, _>(&mut Box::new(frame::Buffers::<_, { frame::FACETS }, LINKS>::new()), row)
+        const LINKS: usize = frame::HALF_FACETS + frame::BANDS;
+        frame::draw::<true, _, _>(&mut Box::new(frame::Buffers::<_, { frame::HALF_FACETS }, LINKS>::new()), row)
     } else {
         frame::draw::<false, _, _>(&mut Box::new(frame::Buffers::<_, 0, 0>::new()), row)
     };
@@ -73,5 +73,5 @@ fn check(fill: &str, most_ram: usize, most_flash: u64) {
 fn the_board_sends_the_hosts_picture() {
     assert_eq!(teapot::vertices().count(), 306);
     check("exact", 32 << 10, 64 << 10);
-    check("grid", 56 << 10, 144 << 10);
+    check("grid", 56 << 10, 64 << 10);
 }

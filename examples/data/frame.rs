@@ -17,8 +17,9 @@ pub(crate) const BAND: usize = (AREA.width * ROWS) as usize;
 /// Bands of a frame.
 pub(crate) const BANDS: usize = AREA.height.div_ceil(ROWS) as usize;
 
-/// Facets of the frame: what a list of all of them holds.
+/// The most facets of a list: the frame has 990, its upper half and its lower half fewer.
 pub(crate) const FACETS: usize = 1000;
+pub(crate) const HALF_FACETS: usize = 700;
 
 /// A frame as it is drawn.
 pub(crate) type Picture<'a> = Frame<'a, BicubicPatch, Palette<Rgb565>>;
@@ -77,30 +78,38 @@ pub(crate) fn place(map: &Affine, patches: &mut [BicubicPatch; 32]) -> Option<()
     teapot::map_into(map, patches).ok()
 }
 
-/// The frame by exact points, back faces culled, in bands of so many rows.
-pub(crate) fn exact(patches: &[BicubicPatch; 32], rows: u32) -> Option<Picture<'_>> {
+/// A part of the frame by exact points, back faces culled, in bands of so many rows.
+pub(crate) fn exact(patches: &[BicubicPatch; 32], area: Area, rows: u32) -> Option<Picture<'_>> {
     let scene = Scene::new(patches, Light::default(), Style::Shaded).ok()?.with_topology(&EDGES).ok()?;
-    Frame::new(scene.with_cull(Cull::Back), &PAINT, Rgb565::BLACK, AREA, rows).ok()
+    Frame::new(scene.with_cull(Cull::Back), &PAINT, Rgb565::BLACK, area, rows).ok()
 }
 
-/// The frame by facets within a pixel of the surface, back faces culled, in bands of so many rows.
-pub(crate) fn grid(patches: &[BicubicPatch; 32], rows: u32) -> Option<Picture<'_>> {
+/// The same by facets within a pixel of the surface.
+pub(crate) fn grid(patches: &[BicubicPatch; 32], area: Area, rows: u32) -> Option<Picture<'_>> {
     let scene = Scene::grid(patches, &EDGES, I16F16::ONE, Light::default(), Style::Shaded).ok()?;
-    Frame::new(scene.with_cull(Cull::Back), &PAINT, Rgb565::BLACK, AREA, rows).ok()
+    Frame::new(scene.with_cull(Cull::Back), &PAINT, Rgb565::BLACK, area, rows).ok()
 }
 
 /// Draws the default view in bands, by facets if `GRID`; `row` gets the rows of the picture from the top. `None` if
 /// anything was refused.
+///
+/// The two halves are frames of their own: a list of facets then takes two thirds of the room, and no pixel changes.
 pub(crate) fn draw<const GRID: bool, const FACETS: usize, const LINKS: usize>(
     buffers: &mut Buffers<BAND, FACETS, LINKS>,
     mut row: impl FnMut(&[Rgb565]),
 ) -> Option<()> {
     let Buffers { patches, facets, links, colour, depth } = buffers;
     place(&view()?, patches)?;
-    let mut frame =
-        if GRID { grid(patches, ROWS)?.with_facets(facets, links).ok()? } else { exact(patches, ROWS)? };
-    while let Some(band) = frame.next_band(colour, depth).ok()? {
-        band.pixels().chunks_exact(AREA.width as usize).for_each(&mut row);
+    let half = AREA.height.div_ceil(2 * ROWS) * ROWS;
+    for area in [Area { height: half, ..AREA }, Area { y: half as i32, height: AREA.height - half, ..AREA }] {
+        let mut frame = if GRID {
+            grid(patches, area, ROWS)?.with_facets(&mut *facets, &mut *links).ok()?
+        } else {
+            exact(patches, area, ROWS)?
+        };
+        while let Some(band) = frame.next_band(colour, depth).ok()? {
+            band.pixels().chunks_exact(AREA.width as usize).for_each(&mut row);
+        }
     }
     Some(())
 }

@@ -35,12 +35,6 @@ pub(super) struct Canvas<'c, P: Paint> {
     pub(super) colour: &'c mut [P::Pixel],
 }
 
-impl<P: Paint> Canvas<'_, P> {
-    fn set(&mut self, spot: &Spot, shade: u8) {
-        self.stain(spot.index, [spot.x, spot.y], shade);
-    }
-}
-
 impl<P: Paint> Stain for Canvas<'_, P> {
     fn stain(&mut self, index: usize, [x, y]: [i32; 2], shade: u8) {
         if let Some(stored) = self.colour.get_mut(index) {
@@ -50,27 +44,31 @@ impl<P: Paint> Stain for Canvas<'_, P> {
 }
 
 /// Colours lines: the highest level everywhere.
-impl<P: Paint> Brush for Canvas<'_, P> {
+pub(super) struct Highest<'c>(pub(super) &'c mut dyn Stain);
+
+impl Brush for Highest<'_> {
     fn dab(&mut self, spot: Spot, _: Option<Option<[i32; 3]>>) {
-        self.set(&spot, u8::MAX);
-    }}
+        self.0.stain(spot.index, [spot.x, spot.y], u8::MAX);
+    }
+}
 
 /// Colours the points of a piece.
-pub(super) struct Shader<'s, 'c, P: Paint> {
+pub(super) struct Shader<'s, 'c> {
     pub(super) shading: Shading<'s>,
-    pub(super) canvas: Canvas<'c, P>,
+    pub(super) stain: &'c mut dyn Stain,
     /// Which way normals point.
     pub(super) side: Side,
     /// Of the piece with all its bits; of a rational one without its weights.
     pub(super) tangents: Tangents<'s>,
 }
 
-impl<P: Paint> Brush for Shader<'_, '_, P> {
+impl Brush for Shader<'_, '_> {
     fn dab(&mut self, spot: Spot, known: Option<Option<[i32; 3]>>) {
         let side = self.side;
         let shade = self.shading.level(spot.depth, || {
             let known = known.unwrap_or_else(|| normal_on(side, self.tangents.at(spot.i, spot.j)));
             known.or_else(|| normal_on(side, self.tangents.inside(spot.i, spot.j))).unwrap_or([0, 0, -1])
         });
-        self.canvas.set(&spot, shade);
-    }}
+        self.stain.stain(spot.index, [spot.x, spot.y], shade);
+    }
+}

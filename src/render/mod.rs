@@ -72,6 +72,7 @@ mod brush;
 mod cubic;
 mod cull;
 mod depth;
+mod fill;
 mod frame;
 mod grid;
 mod light;

@@ -23,20 +23,25 @@
 //!
 //! Depths are those of the fixed-point z: within one unit of the exact ones.
 
+mod corners;
 mod exact;
 mod run;
 mod tangents;
 
+#[cfg(all(test, feature = "std"))]
+mod tests;
+
 use super::brush::Shading;
 use super::light::Side;
 use super::pen::{Ink, Stain};
+use super::style::Style;
 use super::tile::Area;
-use crate::forward::Sampling;
 use crate::geometry::Point3;
 use crate::num::high;
 use crate::patch::{Surface, SurfaceNet};
 use run::{DOUBT, Depths, Line, Pixels, Points, RUN, short};
-use tangents::RowTangents;
+pub(super) use corners::Corners;
+pub(super) use tangents::RowTangents;
 
 /// The most fraction bits of values.
 const MOST_BITS: u32 = 28;
@@ -172,9 +177,9 @@ pub(super) fn suits<S: Surface>(net: &SurfaceNet<'_>) -> bool {
 impl<'n> Piece<'n> {
     /// A piece that [`suits`]; `steepest` is the largest bound on a derivative, in 2^-9.
     #[inline(never)]
-    pub(super) fn new(net: SurfaceNet<'n>, sampling: Sampling, turn: u8, steepest: u32) -> Self {
+    pub(super) fn new(net: SurfaceNet<'n>, steps: (u32, u32), turn: u8, steepest: u32) -> Self {
         let (m, h) = net.degrees();
-        let (r, s) = (Parameters::new(sampling.steps.r()), Parameters::new(sampling.steps.s()));
+        let (r, s) = (Parameters::new(steps.0), Parameters::new(steps.1));
         let is_turned = turn == 1;
         let (degrees, strides) = if is_turned { ([h, m], [1, h + 1]) } else { ([m, h], [h + 1, 1]) };
         let (along, across) = if is_turned { (s, r) } else { (r, s) };
@@ -429,15 +434,45 @@ impl Row<'_, '_> {
             points.clip(count, [area.width, area.height]);
         }
         let z = line(2, 0);
-        let Points { columns, rows, index, seen } = points;
-        let index = index.get(..count).unwrap_or_default();
+        let index = points.index.get(..count).unwrap_or_default();
         if target.ink != Ink::Fill {
             return depths.hide(z, index, target.depth);
         }
+        let mut seen = [0; RUN];
+        let seen = &mut seen;
         let count = depths.test(z, index, target.depth, seen);
-        for k in seen.iter().take(count) {
-            let k = usize::from(*k) & (RUN - 1);
-            self.colour(first + k as u32, [columns[k], rows[k]], index.get(k).map_or(0, |k| *k as usize), target);
+        let seen = seen.get(..count).unwrap_or_default();
+        if count > 0 && target.shading.style.needs_normals() && !self.is_known {
+            piece.tangents(&self.cubics, self.s, &mut self.tangents);
+            self.is_known = true;
+        }
+        if target.shading.style == Style::Shaded {
+            // Most scenes: without asking for the style at each point.
+            self.colour(seen, first, points, target, |row, i, target, _| target.shading.light.level(row.normal(i, target.side)));
+        } else {
+            self.colour(seen, first, points, target, |row, i, target, index| {
+                let depth = target.depth.get(index).map_or(0, |stored| stored >> 1);
+                target.shading.level(depth, || row.normal(i, target.side))
+            });
+        }
+    }
+
+    /// Gives the points that were seen their colours.
+    #[inline(always)]
+    fn colour(
+        &self,
+        seen: &[u8],
+        first: u32,
+        points: &Points,
+        target: &mut Target<'_>,
+        level: impl Fn(&Self, u32, &Target<'_>, usize) -> u8,
+    ) {
+        for k in seen {
+            let (i, k) = (first + u32::from(*k), usize::from(*k) & (RUN - 1));
+            let index = points.index[k] as usize;
+            let at = [target.area.x + i32::from(points.columns[k]), target.area.y + i32::from(points.rows[k])];
+            let level = level(self, i, target, index);
+            target.stain.stain(index, at, level);
         }
     }
 
@@ -448,14 +483,5 @@ impl Row<'_, '_> {
         let base = self.piece.base(axis);
         let pixel = self.piece.exact_pixel(axis, [i, self.j], self.half == 1, near.wrapping_add(base));
         pixel.wrapping_sub(base).wrapping_add(start)
-    }
-
-    /// Gives a point its colour.
-    #[inline(always)]
-    fn colour(&mut self, i: u32, [column, row]: [u16; 2], index: usize, target: &mut Target<'_>) {
-        let (x, y) = (target.area.x + i32::from(column), target.area.y + i32::from(row));
-        let depth = target.depth.get(index).map_or(0, |stored| stored >> 1);
-        let shade = target.shading.level(depth, || self.normal(i, target.side));
-        target.stain.stain(index, [x, y], shade);
     }
 }

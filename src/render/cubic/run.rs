@@ -10,18 +10,17 @@ pub(super) const RUN: usize = 32;
 /// What a coordinate may be off, in units of 2^-F.
 pub(super) const DOUBT: u32 = 1024;
 
-/// The points of a run: the column and the row in the tile, the index of the pixel, and which were seen.
+/// The points of a run: the column and the row in the tile, and the index of the pixel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Points {
     pub(super) columns: [u16; RUN],
     pub(super) rows: [u16; RUN],
     pub(super) index: [u32; RUN],
-    pub(super) seen: [u8; RUN],
 }
 
 impl Points {
     pub(super) const fn new() -> Self {
-        Self { columns: [0; RUN], rows: [0; RUN], index: [0; RUN], seen: [0; RUN] }
+        Self { columns: [0; RUN], rows: [0; RUN], index: [0; RUN] }
     }
 }
 
@@ -36,7 +35,7 @@ pub(super) struct Line {
 
 impl Line {
     #[inline(always)]
-    fn step(&mut self) {
+    pub(super) fn step(&mut self) {
         self.value = self.value.wrapping_add(self.first >> MORE);
         self.first = self.first.wrapping_add(self.second);
         self.second = self.second.wrapping_add(self.third);

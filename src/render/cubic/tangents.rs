@@ -9,7 +9,7 @@ use super::{Cubic, Piece, Row, at, high, scaled};
 
 /// S_r and S_s along a row, each up to a factor, by axis.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct RowTangents {
+pub(in crate::render) struct RowTangents {
     along: [[i32; 3]; 3],
     across: [Cubic; 3],
 }
@@ -24,7 +24,7 @@ fn room(values: &[i32]) -> u32 {
 impl Piece<'_> {
     /// Finds the tangents of the row at `s`, whose coefficients are `cubics`.
     #[inline(never)]
-    fn tangents(&self, cubics: &[[i32; 4]; 3], s: i32, out: &mut RowTangents) {
+    pub(super) fn tangents(&self, cubics: &[[i32; 4]; 3], s: i32, out: &mut RowTangents) {
         for (along, [_, b1, b2, b3]) in out.along.iter_mut().zip(cubics) {
             *along = [*b1, b2.wrapping_shl(2), b3.wrapping_mul(12)];
         }
@@ -44,7 +44,7 @@ impl Piece<'_> {
 
 impl RowTangents {
     #[inline(always)]
-    fn at(&self, t: i32) -> [[i32; 3]; 2] {
+    pub(super) fn at(&self, t: i32) -> [[i32; 3]; 2] {
         let ([x, y, z], [u, v, w]) = (&self.along, &self.across);
         let quadratic = |c: &[i32; 3]| c[0].wrapping_add(high(c[1].wrapping_add(high(c[2], t)), t));
         [[quadratic(x), quadratic(y), quadratic(z)], [at(u, t), at(v, t), at(w, t)]]
@@ -53,7 +53,7 @@ impl RowTangents {
 
 /// The normal of two tangents; `None` where it vanishes. By the upper halves of the products where those say enough.
 #[inline(always)]
-fn normal_of(side: Side, [u, v]: [[i32; 3]; 2]) -> Option<[i32; 3]> {
+pub(super) fn normal_of(side: Side, [u, v]: [[i32; 3]; 2]) -> Option<[i32; 3]> {
     let minor = |a: usize, b: usize| high(u[a], v[b]).wrapping_sub(high(u[b], v[a]));
     let cross = [minor(1, 2), minor(2, 0), minor(0, 1)];
     let size = cross.iter().fold(0, |all, c| all | (c ^ (c >> 31))) as u32;
@@ -68,23 +68,23 @@ fn normal_of(side: Side, [u, v]: [[i32; 3]; 2]) -> Option<[i32; 3]> {
 
 impl Row<'_, '_> {
     /// The normal at point `i`; where the tangents span no plane, that 1/64 further inside.
-    pub(super) fn normal(&mut self, i: u32, side: Side) -> [i32; 3] {
-        if !self.is_known {
-            self.piece.tangents(&self.cubics, self.s, &mut self.tangents);
-            self.is_known = true;
-        }
+    #[inline(always)]
+    pub(super) fn normal(&self, i: u32, side: Side) -> [i32; 3] {
         let t = self.piece.along.half(2 * i + self.half);
-        normal_of(side, self.tangents.at(t)).or_else(|| self.inside(t, side)).unwrap_or([0, 0, -1])
+        normal_of(side, self.tangents.at(t)).or_else(|| self.piece.inside(self.s, t, side)).unwrap_or([0, 0, -1])
     }
+}
 
+impl Piece<'_> {
+    /// The normal 1/64 of the way from a point inwards.
     #[cold]
     #[inline(never)]
-    fn inside(&self, t: i32, side: Side) -> Option<[i32; 3]> {
+    pub(super) fn inside(&self, s: i32, t: i32, side: Side) -> Option<[i32; 3]> {
         let inwards = |t: i32| (1 << 25) + (t >> 6) * 62;
-        let (piece, s) = (self.piece, inwards(self.s));
-        let cubics = [0, 1, 2].map(|axis| piece.row(piece.control(axis, s)));
+        let s = inwards(s);
+        let cubics = [0, 1, 2].map(|axis| self.row(self.control(axis, s)));
         let mut tangents = RowTangents::default();
-        piece.tangents(&cubics, s, &mut tangents);
+        self.tangents(&cubics, s, &mut tangents);
         normal_on(side, tangents.at(inwards(t)))
     }
 }

@@ -1,0 +1,144 @@
+//! Exact points of a patch: its pieces on their way into a tile.
+
+use super::brush::{Shader, Shading};
+use super::cubic;
+use super::cull::{Facing, facing};
+use super::light::Side;
+use super::pen::{Ink, Pen, Rows, Stain};
+use super::pieces::{Pieces, Wanted, each_piece};
+use super::plan::{Plan, each_lattice};
+use super::style::Cull;
+use super::tangents::Tangents;
+use super::tile::Area;
+use super::Statistics;
+use crate::forward::{Fraction, Kind, PieceSlopes, Sampling};
+use crate::geometry::Point3;
+use crate::patch::{Surface, SurfaceNet};
+use core::marker::PhantomData;
+
+/// One patch, where it is drawn and how; for all colour types.
+pub(super) struct Drawing<'d> {
+    pub(super) net: SurfaceNet<'d>,
+    pub(super) shading: Shading<'d>,
+    pub(super) cull: Cull,
+    /// Whether S_r × S_s points inwards.
+    pub(super) inward: bool,
+    pub(super) ink: Ink,
+    pub(super) area: Area,
+    pub(super) depth: &'d mut [u16],
+    pub(super) stain: &'d mut dyn Stain,
+    pub(super) statistics: &'d mut Statistics,
+}
+
+/// How a patch is drawn. Scenes hold such functions: what no scene of a program can draw by is not linked.
+pub(super) type Draw = for<'a, 'd> fn(&'a mut Drawing<'d>);
+
+/// Draws the pieces of one patch of a type `S` that meet the tile.
+#[inline(never)]
+pub(super) fn fill<S: Surface>(drawing: &mut Drawing<'_>) {
+    each_piece::<S>(drawing.net, &mut Filling::<S> { kind: PhantomData, drawing });
+}
+
+/// Whether the box of a piece has pixels in an area.
+fn meets(piece: SurfaceNet<'_>, area: &Area) -> bool {
+    let (mut x, mut y) = ((i32::MAX, i32::MIN), (i32::MAX, i32::MIN));
+    for p in piece.points() {
+        x = (x.0.min(p.x.to_bits()), x.1.max(p.x.to_bits()));
+        y = (y.0.min(p.y.to_bits()), y.1.max(p.y.to_bits()));
+    }
+    let overlaps = |(low, high): (i32, i32), start: i32, length: u32| {
+        // Rounded half up; legal coordinates leave room.
+        let [low, high] = [low, high].map(|c| (c + (1 << 15)) >> 16);
+        high >= start && i64::from(low) < i64::from(start) + i64::from(length)
+    };
+    overlaps(y, area.y, area.height) && overlaps(x, area.x, area.width)
+}
+
+/// The pieces of one patch on their way into a tile.
+struct Filling<'f, 'd, S> {
+    kind: PhantomData<S>,
+    drawing: &'f mut Drawing<'d>,
+}
+
+impl<S: Surface> Filling<'_, '_, S> {
+    /// Which way normals point; a tensor-product lattice that is turned has its tangents exchanged.
+    fn side(&self, is_turned: bool) -> Side {
+        match (self.drawing.cull, self.drawing.inward != is_turned) {
+            (Cull::None, _) => Side::Viewer,
+            (Cull::Back, false) => Side::Along,
+            (Cull::Back, true) => Side::Against,
+        }
+    }
+
+    /// Draws a piece of degree 3 or less.
+    #[inline(never)]
+    fn cubic(&mut self, net: SurfaceNet<'_>, sampling: Sampling, slopes: &PieceSlopes) {
+        let turn = slopes.turn(false, sampling.centres);
+        let piece = cubic::Piece::new(net, (sampling.steps.r(), sampling.steps.s()), turn, slopes.steepest(net));
+        let side = self.side(turn == 1);
+        let mut target = cubic::Target {
+            area: self.drawing.area,
+            depth: self.drawing.depth,
+            shading: self.drawing.shading,
+            ink: self.drawing.ink,
+            side,
+            points: &mut self.drawing.statistics.points,
+            stain: self.drawing.stain,
+        };
+        piece.draw(false, &mut target);
+        if sampling.centres {
+            piece.draw(true, &mut target);
+        }
+    }
+
+    /// Draws one lattice of a piece.
+    fn lattice(&mut self, piece: SurfaceNet<'_>, plan: &Plan<'_>, halvings: u32) {
+        let form = &plan.form;
+        let side = self.side(form.kind == Kind::Tensor && form.turn() == 1);
+        let Drawing { shading, area, depth, ink, stain, statistics, .. } = &mut *self.drawing;
+        let window = shading.window.halved(halvings);
+        let mut shader =
+            Shader { shading: *shading, stain: &mut **stain, side, tangents: Tangents::new(piece, form) };
+        plan.draw::<S>(&mut Pen {
+            area: *area,
+            depth,
+            window,
+            fraction: Fraction::of(plan.budget.scale, window.bits),
+            ink: *ink,
+            side,
+            form,
+            rows: Rows::in_band(form, (area.y, area.y.saturating_add_unsigned(area.height))),
+            points: &mut statistics.points,
+            brush: &mut shader,
+        });
+    }
+}
+
+impl<S: Surface> Pieces for Filling<'_, '_, S> {
+    fn wants(&mut self, piece: SurfaceNet<'_>, is_front: bool) -> Wanted {
+        if !meets(piece, &self.drawing.area) {
+            return Wanted::No;
+        }
+        if self.drawing.cull == Cull::None || is_front {
+            return Wanted::Front;
+        }
+        match facing(&piece, self.drawing.inward) {
+            Facing::Away => Wanted::No,
+            Facing::Viewer => Wanted::Front,
+            Facing::Unknown => Wanted::Yes,
+        }
+    }
+
+    fn piece(&mut self, piece: SurfaceNet<'_>, sampling: Sampling, slopes: &PieceSlopes, room: &mut [Point3]) {
+        self.drawing.statistics.pieces += 1;
+        if cubic::suits::<S>(&piece) {
+            return self.cubic(piece, sampling, slopes);
+        }
+        // Checked in `new`, so it cannot fail here.
+        let _ = each_lattice::<S>(piece, sampling, room, &mut |plan, halvings| self.lattice(piece, plan, halvings));
+    }
+
+    fn split(&mut self) {
+        self.drawing.statistics.splits += 1;
+    }
+}
