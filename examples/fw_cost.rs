@@ -15,7 +15,7 @@
 #[path = "board/counter.rs"]
 mod counter;
 #[path = "data/frame.rs"]
-#[allow(dead_code, reason = "the file format and the halves are for `fw_frame`")]
+#[allow(dead_code, reason = "the file format and the parts are for `fw_frame`")]
 pub(crate) mod frame;
 #[path = "board/run.rs"]
 mod run;

@@ -20,7 +20,7 @@ pub(crate) mod teapot;
 #[allow(dead_code, reason = "tests draw both")]
 const GRID: bool = matches!(option_env!("FW_FRAME_FILL"), Some(fill) if matches!(fill.as_bytes(), b"grid"));
 /// Facets of the list, if there is one.
-const FACETS: usize = if GRID { frame::HALF_FACETS } else { 0 };
+const FACETS: usize = if GRID { frame::PART_FACETS } else { 0 };
 const LINKS: usize = if GRID { FACETS + frame::BANDS } else { 0 };
 
 type Buffers = frame::Buffers<{ frame::BAND }, FACETS, LINKS>;

@@ -15,8 +15,8 @@ fn expected(grid: bool) -> Vec<u8> {
     let mut bytes = frame::PPM_HEAD.to_vec();
     let row = |row: &[_]| bytes.extend_from_slice(&frame::ppm_row(row));
     let drawn = if grid {
-        const LINKS: usize = frame::HALF_FACETS + frame::BANDS;
-        frame::draw::<true, _, _>(&mut Box::new(frame::Buffers::<_, { frame::HALF_FACETS }, LINKS>::new()), row)
+        const LINKS: usize = frame::PART_FACETS + frame::BANDS;
+        frame::draw::<true, _, _>(&mut Box::new(frame::Buffers::<_, { frame::PART_FACETS }, LINKS>::new()), row)
     } else {
         frame::draw::<false, _, _>(&mut Box::new(frame::Buffers::<_, 0, 0>::new()), row)
     };

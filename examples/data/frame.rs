@@ -17,9 +17,11 @@ pub(crate) const BAND: usize = (AREA.width * ROWS) as usize;
 /// Bands of a frame.
 pub(crate) const BANDS: usize = AREA.height.div_ceil(ROWS) as usize;
 
-/// The most facets of a list: the frame has 990, its upper half and its lower half fewer.
+/// The most facets of a list: the frame has 992, and each of its two parts 669 or fewer.
 pub(crate) const FACETS: usize = 1000;
-pub(crate) const HALF_FACETS: usize = 700;
+pub(crate) const PART_FACETS: usize = 680;
+/// Rows of the upper part.
+const UPPER: u32 = 6 * ROWS;
 
 /// A frame as it is drawn.
 pub(crate) type Picture<'a> = Frame<'a, BicubicPatch, Palette<Rgb565>>;
@@ -93,15 +95,14 @@ pub(crate) fn grid(patches: &[BicubicPatch; 32], area: Area, rows: u32) -> Optio
 /// Draws the default view in bands, by facets if `GRID`; `row` gets the rows of the picture from the top. `None` if
 /// anything was refused.
 ///
-/// The two halves are frames of their own: a list of facets then takes two thirds of the room, and no pixel changes.
+/// The two parts are frames of their own: a list of facets then takes two thirds of the room, and no pixel changes.
 pub(crate) fn draw<const GRID: bool, const FACETS: usize, const LINKS: usize>(
     buffers: &mut Buffers<BAND, FACETS, LINKS>,
     mut row: impl FnMut(&[Rgb565]),
 ) -> Option<()> {
     let Buffers { patches, facets, links, colour, depth } = buffers;
     place(&view()?, patches)?;
-    let half = AREA.height.div_ceil(2 * ROWS) * ROWS;
-    for area in [Area { height: half, ..AREA }, Area { y: half as i32, height: AREA.height - half, ..AREA }] {
+    for area in [Area { height: UPPER, ..AREA }, Area { y: UPPER as i32, height: AREA.height - UPPER, ..AREA }] {
         let mut frame = if GRID {
             grid(patches, area, ROWS)?.with_facets(&mut *facets, &mut *links).ok()?
         } else {

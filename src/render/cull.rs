@@ -132,8 +132,10 @@ fn bicubic_cones(points: &[Point3; 16]) -> Option<(Cone, Cone)> {
     };
     // Sums of the differences, a quarter of them.
     let sum = |ends: [[usize; 2]; 4]| {
-        let all = ends.map(|[from, to]| between(from, to).map(|c| c >> 2));
-        [0, 1].map(|axis: usize| all[0][axis] + all[1][axis] + all[2][axis] + all[3][axis])
+        ends.iter().fold([0; 2], |[x, y]: Vector, [from, to]| {
+            let [u, v] = between(*from, *to);
+            [x + (u >> 2), y + (v >> 2)]
+        })
     };
     let along_r = Cone::around(sum([[0, 12], [1, 13], [2, 14], [3, 15]]), (0..12).map(|k| between(k, k + 4)))?;
     let in_rows = (0..12).map(|k| between(k + k / 3, k + k / 3 + 1));

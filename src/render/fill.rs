@@ -1,5 +1,6 @@
 //! Exact points of a patch: its pieces on their way into a tile.
 
+use super::Statistics;
 use super::brush::{Shader, Shading};
 use super::cubic;
 use super::cull::{Facing, facing};
@@ -10,7 +11,6 @@ use super::plan::{Plan, each_lattice};
 use super::style::Cull;
 use super::tangents::Tangents;
 use super::tile::Area;
-use super::Statistics;
 use crate::forward::{Fraction, Kind, PieceSlopes, Sampling};
 use crate::geometry::Point3;
 use crate::patch::{Surface, SurfaceNet};
@@ -36,28 +36,41 @@ pub(super) type Draw = for<'a, 'd> fn(&'a mut Drawing<'d>);
 /// Draws the pieces of one patch of a type `S` that meet the tile.
 #[inline(never)]
 pub(super) fn fill<S: Surface>(drawing: &mut Drawing<'_>) {
-    each_piece::<S>(drawing.net, &mut Filling::<S> { kind: PhantomData, drawing });
+    let is_wide = is_wide(drawing.net, &drawing.area);
+    each_piece::<S>(drawing.net, &mut Filling::<S> { kind: PhantomData, drawing, is_wide });
 }
 
-/// Whether the box of a piece has pixels in an area.
-fn meets(piece: SurfaceNet<'_>, area: &Area) -> bool {
-    let (mut x, mut y) = ((i32::MAX, i32::MIN), (i32::MAX, i32::MIN));
-    for p in piece.points() {
-        x = (x.0.min(p.x.to_bits()), x.1.max(p.x.to_bits()));
-        y = (y.0.min(p.y.to_bits()), y.1.max(p.y.to_bits()));
-    }
-    let overlaps = |(low, high): (i32, i32), start: i32, length: u32| {
-        // Rounded half up; legal coordinates leave room.
-        let [low, high] = [low, high].map(|c| (c + (1 << 15)) >> 16);
-        high >= start && i64::from(low) < i64::from(start) + i64::from(length)
-    };
-    overlaps(y, area.y, area.height) && overlaps(x, area.x, area.width)
+/// Whether control values have pixels in `length` pixels from `start` on.
+#[inline(always)]
+fn overlaps(values: impl Iterator<Item = i32>, start: i32, length: u32) -> bool {
+    let (low, high) = values.fold((i32::MAX, i32::MIN), |(low, high), c| (low.min(c), high.max(c)));
+    // Rounded half up; legal coordinates leave room.
+    let [low, high] = [low, high].map(|c| (c + (1 << 15)) >> 16);
+    high >= start && i64::from(low) < i64::from(start) + i64::from(length)
+}
+
+/// Whether the box of a piece has pixels in an area; `is_wide`: it may be beside it.
+fn meets(piece: SurfaceNet<'_>, area: &Area, is_wide: bool) -> bool {
+    let points = piece.points().iter();
+    overlaps(points.clone().map(|p| p.y.to_bits()), area.y, area.height)
+        && (!is_wide || overlaps(points.map(|p| p.x.to_bits()), area.x, area.width))
+}
+
+/// Whether a patch may have points in columns outside an area.
+fn is_wide(net: SurfaceNet<'_>, area: &Area) -> bool {
+    let end = i64::from(area.x) + i64::from(area.width);
+    net.points().iter().any(|p| {
+        let column = (p.x.to_bits() + (1 << 15)) >> 16;
+        column <= area.x || i64::from(column) + 1 >= end
+    })
 }
 
 /// The pieces of one patch on their way into a tile.
 struct Filling<'f, 'd, S> {
     kind: PhantomData<S>,
     drawing: &'f mut Drawing<'d>,
+    /// Whether the patch may have points in columns outside the tile.
+    is_wide: bool,
 }
 
 impl<S: Surface> Filling<'_, '_, S> {
@@ -82,6 +95,7 @@ impl<S: Surface> Filling<'_, '_, S> {
             shading: self.drawing.shading,
             ink: self.drawing.ink,
             side,
+            is_wide: self.is_wide,
             points: &mut self.drawing.statistics.points,
             stain: self.drawing.stain,
         };
@@ -97,8 +111,7 @@ impl<S: Surface> Filling<'_, '_, S> {
         let side = self.side(form.kind == Kind::Tensor && form.turn() == 1);
         let Drawing { shading, area, depth, ink, stain, statistics, .. } = &mut *self.drawing;
         let window = shading.window.halved(halvings);
-        let mut shader =
-            Shader { shading: *shading, stain: &mut **stain, side, tangents: Tangents::new(piece, form) };
+        let mut shader = Shader { shading: *shading, stain: &mut **stain, side, tangents: Tangents::new(piece, form) };
         plan.draw::<S>(&mut Pen {
             area: *area,
             depth,
@@ -116,7 +129,7 @@ impl<S: Surface> Filling<'_, '_, S> {
 
 impl<S: Surface> Pieces for Filling<'_, '_, S> {
     fn wants(&mut self, piece: SurfaceNet<'_>, is_front: bool) -> Wanted {
-        if !meets(piece, &self.drawing.area) {
+        if !meets(piece, &self.drawing.area, self.is_wide) {
             return Wanted::No;
         }
         if self.drawing.cull == Cull::None || is_front {

@@ -1,10 +1,10 @@
 //! Lines: iso-parametric curves, control nets, normals.
 
 use super::brush::Highest;
+use super::fill::Drawing;
 use super::light::Side;
 use super::pen::{Ink, Pen, Rows, normal_inside};
 use super::plan::Plan;
-use super::fill::Drawing;
 use super::style::{Lines, Style};
 #[cfg(feature = "styled")]
 use crate::forward::Budget;

@@ -32,7 +32,8 @@ pub(super) struct Spot {
 /// What colours points that are seen.
 pub(super) trait Brush {
     /// Colours a point; `normal` comes from a walk that knows it, `None` there where the tangents span no plane.
-    fn dab(&mut self, spot: Spot, normal: Option<Option<[i32; 3]>>);}
+    fn dab(&mut self, spot: Spot, normal: Option<Option<[i32; 3]>>);
+}
 
 /// What sets the colour of a pixel by its level.
 pub(super) trait Stain {

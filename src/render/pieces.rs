@@ -14,7 +14,7 @@ use crate::subdivide::{Cut, Direction, Half, Quarter, Source, part_net};
 
 /// The most points of a polynomial tensor-product piece: about what a bicubic can have with 32-bit accumulators, which
 /// take half the instructions of wider ones on a Cortex-M.
-const LARGEST: u64 = 600;
+const LARGEST: u64 = 370;
 
 /// What setting up another piece counts for, in points.
 const SETUP: u64 = 24;
@@ -199,7 +199,7 @@ impl Tree<'_, '_> {
         // Up to degree 3 any legal net fits 128 bits: (n_r·n_s)^3·2^7·(2K+1) with n below 2^19.
         let fits_always = direct && (S::SHAPE.degree <= 3 || degree(&piece) <= 3);
         if depth < deepest && fits_always && slopes.least_points() > LARGEST {
-            return Some(if slopes.is_longer_along_s() { Split::S } else { Split::R });
+            return Some(halves_of(&slopes));
         }
         let sampling = slopes.sampling::<S>(piece, true);
         let split = if depth == deepest {
@@ -208,8 +208,7 @@ impl Tree<'_, '_> {
             // Both directions at once: what the check of the scene counts on.
             Some(if triangles { Split::Triangles } else { Split::Squares })
         } else if direct {
-            (sampling.points(false) > LARGEST)
-                .then(|| if slopes.is_longer_along_s() { Split::S } else { Split::R })
+            (sampling.points(false) > LARGEST).then(|| halves_of(&slopes))
         } else {
             split_that_pays::<S>(source(piece, depth), sampling, slot, weight_slot)
         };
@@ -272,6 +271,11 @@ fn degree(piece: &SurfaceNet<'_>) -> usize {
 fn source(piece: SurfaceNet<'_>, depth: usize) -> (SurfaceNet<'_>, Source<'_>) {
     let source = Source::of(piece);
     (piece, if depth == 0 { source.with_long_weights() } else { source })
+}
+
+/// Halves of the longer direction.
+fn halves_of(slopes: &PieceSlopes) -> Split {
+    if slopes.is_longer_along_s() { Split::S } else { Split::R }
 }
 
 /// The halves that promise fewer points.

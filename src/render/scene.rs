@@ -146,9 +146,10 @@ impl<'a, S: Surface> Scene<'a, S> {
     }
 
     fn each_patch(&self, check: impl Fn(SurfaceNet<'a>) -> Result<(), LatticeError>) -> Result<(), RenderError> {
-        self.patches.iter().enumerate().try_for_each(|(index, patch)| {
-            check(patch.surface()).map_err(|error| RenderError::Patch { index, error })
-        })
+        self.patches
+            .iter()
+            .enumerate()
+            .try_for_each(|(index, patch)| check(patch.surface()).map_err(|error| RenderError::Patch { index, error }))
     }
 
     fn unchecked(patches: &'a [S], light: Light, style: Style) -> Self {
@@ -277,7 +278,9 @@ impl<'a, S: Surface> Scene<'a, S> {
     pub fn draw<P: Paint>(&self, tile: &mut Tile<'_, P::Pixel>, paint: &P) -> Statistics {
         let mut statistics = Statistics::default();
         if self.style.lines() == Some(true) {
-            self.each_visible(tile, |tile, patch| self.trace(self.fill, tile, paint, patch, Ink::Occlude, &mut statistics));
+            self.each_visible(tile, |tile, patch| {
+                self.trace(self.fill, tile, paint, patch, Ink::Occlude, &mut statistics)
+            });
         }
         self.each_visible(tile, |tile, index| {
             statistics.patches += 1;

@@ -44,7 +44,13 @@ impl Piece<'_> {
     }
 
     #[inline(never)]
-    fn settle<W: Word>(&self, axis: usize, at: [u32; 2], cells: [u32; 2], (near, border, unit): (i32, i64, u32)) -> i32 {
+    fn settle<W: Word>(
+        &self,
+        axis: usize,
+        at: [u32; 2],
+        cells: [u32; 2],
+        (near, border, unit): (i32, i64, u32),
+    ) -> i32 {
         let along: [W; 4] = weights(self.degrees[0], at[0], cells[0]);
         let across: [W; 4] = weights(self.degrees[1], at[1], cells[1]);
         let coordinate = |p: &Point3| {

@@ -39,8 +39,8 @@ use super::tile::Area;
 use crate::geometry::Point3;
 use crate::num::high;
 use crate::patch::{Surface, SurfaceNet};
-use run::{DOUBT, Depths, Line, Pixels, Points, RUN, short};
 pub(super) use corners::Corners;
+use run::{DOUBT, Depths, Line, Pixels, Points, RUN, indexed, short};
 pub(super) use tangents::RowTangents;
 
 /// The most fraction bits of values.
@@ -78,7 +78,13 @@ impl Parameters {
         Self { steps, factor, shift }
     }
 
-    /// The parameter of half step `i`.
+    /// The parameter of half step `i` in one product: within 2·i of those units.
+    #[inline(always)]
+    fn near(&self, i: u32) -> i32 {
+        i.wrapping_mul(self.factor >> (self.shift & 15)) as i32
+    }
+
+    /// The parameter of half step `i`, within two units.
     #[inline(always)]
     fn half(&self, i: u32) -> i32 {
         ((u64::from(i) * u64::from(self.factor)) >> (self.shift & 15)) as i32
@@ -89,8 +95,8 @@ impl Parameters {
 #[derive(Clone, Copy, Debug)]
 struct Powers {
     powers: [i32; 3],
-    /// How far products with them are shifted left, then right, to be differences.
-    left: [u32; 3],
+    /// What products with them are multiplied by, then how far they are shifted right, to be differences.
+    left: [i32; 3],
     right: [u32; 3],
 }
 
@@ -103,14 +109,14 @@ impl Powers {
         let by = [1, 2, 3].map(|k| (k * shift) as i32 - if k == 1 { 1 } else { 5 });
         Self {
             powers: [first, second, third],
-            left: by.map(|by| by.min(0).unsigned_abs()),
+            left: by.map(|by| 1 << by.min(0).unsigned_abs()),
             right: by.map(|by| by.clamp(0, 31).unsigned_abs()),
         }
     }
 
     #[inline(always)]
     fn times(&self, k: usize, value: i32) -> i32 {
-        high(value, self.powers[k]) << self.left[k] >> self.right[k]
+        high(value, self.powers[k]).wrapping_mul(self.left[k]) >> self.right[k]
     }
 }
 
@@ -122,12 +128,7 @@ const FACTORS: [[i32; 3]; 4] = [[0, 0, 0], [1, 0, 0], [2, 1, 0], [3, 3, 1]];
 fn power(p: [i32; 4], factors: &[i32; 3]) -> [i32; 4] {
     let (u, v, w) = (p[1].wrapping_sub(p[0]), p[2].wrapping_sub(p[1]), p[3].wrapping_sub(p[2]));
     let (vu, wv) = (v.wrapping_sub(u), w.wrapping_sub(v));
-    [
-        p[0],
-        u.wrapping_mul(factors[0]),
-        vu.wrapping_mul(factors[1]),
-        wv.wrapping_sub(vu).wrapping_mul(factors[2]),
-    ]
+    [p[0], u.wrapping_mul(factors[0]), vu.wrapping_mul(factors[1]), wv.wrapping_sub(vu).wrapping_mul(factors[2])]
 }
 
 #[inline(always)]
@@ -142,6 +143,8 @@ pub(super) struct Target<'t> {
     pub(super) shading: Shading<'t>,
     pub(super) ink: Ink,
     pub(super) side: Side,
+    /// Whether points may be in columns outside the tile.
+    pub(super) is_wide: bool,
     pub(super) points: &'t mut u64,
     pub(super) stain: &'t mut dyn Stain,
 }
@@ -296,7 +299,7 @@ impl<'n> Piece<'n> {
             j: 0,
             half,
             s: 0,
-            clip: false,
+            clip: [false; 2],
             tangents: RowTangents::default(),
             is_known: false,
         };
@@ -309,13 +312,13 @@ impl<'n> Piece<'n> {
             }
             *target.points += u64::from(last) + 1;
             let x = self.control(0, s);
-            let by_column = sides[0].place(&x);
+            let by_column = if target.is_wide { sides[0].place(&x) } else { Place::Inside };
             if by_column == Place::Outside {
                 continue;
             }
             row.cubics = [self.row(x), self.row(y), self.row(self.control(2, s))];
             (row.j, row.s, row.is_known) = (j, s, false);
-            row.clip = by_row == Place::Across || by_column == Place::Across;
+            row.clip = [by_column == Place::Across, by_row == Place::Across];
             let mut first = 0;
             while first <= last {
                 let count = (last + 1 - first).min(RUN as u32);
@@ -380,8 +383,8 @@ struct Row<'p, 'n> {
     /// 1 for the lattice of centres.
     half: u32,
     s: i32,
-    /// Whether some points may be outside the tile.
-    clip: bool,
+    /// Whether some points may be in columns, and in rows, outside the tile.
+    clip: [bool; 2],
     tangents: RowTangents,
     /// Whether the tangents were found.
     is_known: bool,
@@ -406,7 +409,7 @@ impl Row<'_, '_> {
         };
         let x = line(0, DOUBT);
         let columns = points.columns.get_mut(..count).unwrap_or_default();
-        let is_sure = if self.clip {
+        let is_sure = if self.clip[0] {
             pixels.columns::<true>(x, columns, starts[0])
         } else {
             pixels.columns::<false>(x, columns, starts[0])
@@ -417,38 +420,41 @@ impl Row<'_, '_> {
             });
         }
         let y = line(1, DOUBT);
-        let is_sure = if self.clip {
-            pixels.rows::<true>(y, points, count, starts[1], area.width)
+        let sides = [area.width, area.height];
+        let is_sure = if self.clip[1] {
+            pixels.rows::<true>(y, points, count, starts[1], sides)
         } else {
-            pixels.rows::<false>(y, points, count, starts[1], area.width)
+            pixels.rows::<false>(y, points, count, starts[1], sides)
         };
         if !is_sure {
             pixels.each_doubtful(y, count, &mut |k, near| {
                 let k = k & (RUN - 1);
                 let row = self.settle(1, first + k as u32, near, starts[1]);
-                points.rows[k] = short::<true>(row);
-                points.index[k] = (row as u32).wrapping_mul(area.width).wrapping_add(points.columns[k].into());
+                points.rows[k] = row as u16;
+                points.index[k] = indexed::<true>(row, points.columns[k], sides);
             });
         }
-        if self.clip {
-            points.clip(count, [area.width, area.height]);
+        if self.clip[0] {
+            points.clip(count, area.width);
         }
         let z = line(2, 0);
-        let index = points.index.get(..count).unwrap_or_default();
+        let Points { index, seen, .. } = &mut *points;
+        let index = index.get(..count).unwrap_or_default();
         if target.ink != Ink::Fill {
             return depths.hide(z, index, target.depth);
         }
-        let mut seen = [0; RUN];
-        let seen = &mut seen;
         let count = depths.test(z, index, target.depth, seen);
-        let seen = seen.get(..count).unwrap_or_default();
+        let points = &*points;
+        let seen = points.seen.get(..count).unwrap_or_default();
         if count > 0 && target.shading.style.needs_normals() && !self.is_known {
             piece.tangents(&self.cubics, self.s, &mut self.tangents);
             self.is_known = true;
         }
         if target.shading.style == Style::Shaded {
             // Most scenes: without asking for the style at each point.
-            self.colour(seen, first, points, target, |row, i, target, _| target.shading.light.level(row.normal(i, target.side)));
+            self.colour(seen, first, points, target, |row, i, target, _| {
+                target.shading.light.level(row.normal(i, target.side))
+            });
         } else {
             self.colour(seen, first, points, target, |row, i, target, index| {
                 let depth = target.depth.get(index).map_or(0, |stored| stored >> 1);

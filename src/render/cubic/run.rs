@@ -10,17 +10,19 @@ pub(super) const RUN: usize = 32;
 /// What a coordinate may be off, in units of 2^-F.
 pub(super) const DOUBT: u32 = 1024;
 
-/// The points of a run: the column and the row in the tile, and the index of the pixel.
+/// The points of a run: the column and the row in the tile, the index of the pixel, and which
+/// were seen.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Points {
     pub(super) columns: [u16; RUN],
     pub(super) rows: [u16; RUN],
     pub(super) index: [u32; RUN],
+    pub(super) seen: [u8; RUN],
 }
 
 impl Points {
     pub(super) const fn new() -> Self {
-        Self { columns: [0; RUN], rows: [0; RUN], index: [0; RUN] }
+        Self { columns: [0; RUN], rows: [0; RUN], index: [0; RUN], seen: [0; RUN] }
     }
 }
 
@@ -75,17 +77,25 @@ impl Pixels {
         least >= self.doubt
     }
 
-    /// Writes rows, counted likewise, and indices; whether all are sure.
+    /// Writes rows, counted likewise, and indices; whether all are sure. `CLIP`: indices of rows from `height` on are the
+    /// largest number.
     #[inline(never)]
-    pub(super) fn rows<const CLIP: bool>(&self, mut line: Line, points: &mut Points, count: usize, start: i32, width: u32) -> bool {
+    pub(super) fn rows<const CLIP: bool>(
+        &self,
+        mut line: Line,
+        points: &mut Points,
+        count: usize,
+        start: i32,
+        [width, height]: [u32; 2],
+    ) -> bool {
         let (up, bits) = (self.up & 31, self.bits & 31);
         let mut least = u32::MAX;
         let out = points.rows.iter_mut().zip(&mut points.index);
         for ((row, index), column) in out.zip(&points.columns).take(count) {
             least = least.min((line.value as u32) << up);
             let pixel = (line.value >> bits).wrapping_add(start);
-            *index = (pixel as u32).wrapping_mul(width).wrapping_add((*column).into());
-            *row = short::<CLIP>(pixel);
+            *index = indexed::<CLIP>(pixel, *column, [width, height]);
+            *row = pixel as u16;
             line.step();
             core::hint::black_box(());
         }
@@ -111,12 +121,19 @@ pub(super) fn short<const CLIP: bool>(pixel: i32) -> u16 {
     if CLIP { u16::try_from(pixel).unwrap_or(u16::MAX) } else { pixel as u16 }
 }
 
+/// The index of a pixel; `CLIP`: the largest number where its row is not in the tile.
+#[inline(always)]
+pub(super) fn indexed<const CLIP: bool>(row: i32, column: u16, [width, height]: [u32; 2]) -> u32 {
+    let index = (row as u32).wrapping_mul(width).wrapping_add(column.into());
+    if CLIP && row as u32 >= height { u32::MAX } else { index }
+}
+
 impl Points {
-    /// Takes back the indices of points that are not in the tile.
+    /// Takes back the indices of points whose columns are not in the tile.
     #[inline(never)]
-    pub(super) fn clip(&mut self, count: usize, [width, height]: [u32; 2]) {
-        for ((index, column), row) in self.index.iter_mut().zip(&self.columns).zip(&self.rows).take(count) {
-            if u32::from(*column) >= width || u32::from(*row) >= height {
+    pub(super) fn clip(&mut self, count: usize, width: u32) {
+        for (index, column) in self.index.iter_mut().zip(&self.columns).take(count) {
+            if u32::from(*column) >= width {
                 *index = u32::MAX;
             }
         }

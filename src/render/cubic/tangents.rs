@@ -1,8 +1,8 @@
 //! Normals of a piece where they are wanted.
 //!
-//! Along a row S_r is a quadratic of the row's own coefficients, S_s a cubic through the derivatives of the columns; both
-//! are shifted so that their coefficients use 30 bits, S_s 25: a tangent is within 2^-24 of the longest of its row, and
-//! within 2^-26 of the longest of its piece.
+//! Along a row S_r is a quadratic of the row's own coefficients, which leave 27 bits for it; S_s a cubic through the
+//! derivatives of the columns, shifted to 25 bits. S_r is within 2^-25 of the steepest tangent of its piece, S_s within 2^-23
+//! of the longest of its row.
 
 use super::super::light::{Side, normal_on, truncate};
 use super::{Cubic, Piece, Row, at, high, scaled};
@@ -28,8 +28,6 @@ impl Piece<'_> {
         for (along, [_, b1, b2, b3]) in out.along.iter_mut().zip(cubics) {
             *along = [*b1, b2.wrapping_shl(2), b3.wrapping_mul(12)];
         }
-        let up = room(out.along.as_flattened()).saturating_sub(1);
-        out.along.as_flattened_mut().iter_mut().for_each(|c| *c <<= up);
         // From c0, 2·c1, 4·c2, 8·c3 to c1, 4·c2, 12·c3.
         let slope = |c: &Cubic| at(&[c[1] >> 1, c[2], c[3].wrapping_add(c[3] >> 1), 0], s);
         let mut slopes = self.columns.each_ref().map(|[a, b, c, d]| [slope(a), slope(b), slope(c), slope(d)]);
@@ -70,7 +68,7 @@ impl Row<'_, '_> {
     /// The normal at point `i`; where the tangents span no plane, that 1/64 further inside.
     #[inline(always)]
     pub(super) fn normal(&self, i: u32, side: Side) -> [i32; 3] {
-        let t = self.piece.along.half(2 * i + self.half);
+        let t = self.piece.along.near(2 * i + self.half);
         normal_of(side, self.tangents.at(t)).or_else(|| self.piece.inside(self.s, t, side)).unwrap_or([0, 0, -1])
     }
 }
@@ -82,7 +80,7 @@ impl Piece<'_> {
     pub(super) fn inside(&self, s: i32, t: i32, side: Side) -> Option<[i32; 3]> {
         let inwards = |t: i32| (1 << 25) + (t >> 6) * 62;
         let s = inwards(s);
-        let cubics = [0, 1, 2].map(|axis| self.row(self.control(axis, s)));
+        let cubics = [self.row(self.control(0, s)), self.row(self.control(1, s)), self.row(self.control(2, s))];
         let mut tangents = RowTangents::default();
         self.tangents(&cubics, s, &mut tangents);
         normal_on(side, tangents.at(inwards(t)))

@@ -40,6 +40,7 @@ fn drawn(net: SurfaceNet<'_>, steps: (u32, u32), turn: u8, centred: bool, area: 
             shading,
             ink: Ink::Fill,
             side: Side::Viewer,
+            is_wide: true,
             points: &mut points,
             stain: &mut record,
         },
@@ -89,7 +90,9 @@ fn both_ends_of_the_range() {
     for (bits, steps) in [(wild, (61, 33)), (vec![(1 << 15, -(1 << 15)); 16], (3, 2))] {
         let points = net_of(3, 3, &bits, 0);
         let net = SurfaceNet::Tensor(TensorNet::new((3, 3), &points).unwrap());
-        for area in [Area { x: -32_767, y: -32_767, width: 32_768, height: 400 }, Area { x: -9, y: -9, width: 99, height: 99 }] {
+        for area in
+            [Area { x: -32_767, y: -32_767, width: 32_768, height: 400 }, Area { x: -9, y: -9, width: 99, height: 99 }]
+        {
             for (turn, centred) in [(0, false), (1, false), (0, true), (1, true)] {
                 assert_eq!(drawn(net, steps, turn, centred, area), exact(net, steps, centred, area), "{area:?}");
             }

@@ -240,13 +240,7 @@ impl RowSink for Cells<'_> {
 impl Cells<'_> {
     /// The cell after column `k` of the strip.
     #[inline(never)]
-    fn seen(
-        &mut self,
-        above: &mut Row,
-        below: &mut Row,
-        (normals, j, k): (&dyn Normals, u32, usize),
-        areas: [i32; 2],
-    ) {
+    fn seen(&mut self, above: &mut Row, below: &mut Row, (normals, j, k): (&dyn Normals, u32, usize), areas: [i32; 2]) {
         let at = [self.first + k as u32, j];
         if let (Some([a, b]), Some([d, c])) = (above.get_mut(k..k + 2), below.get_mut(k..k + 2)) {
             self.cell(Cell { corners: [a, b, c, d], normals, at }, areas, false);
