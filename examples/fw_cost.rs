@@ -26,7 +26,10 @@ use embedded_graphics_core::pixelcolor::IntoStorage;
 use embedded_surfaces::geometry::Affine;
 use embedded_surfaces::patch::BicubicPatch;
 use embedded_surfaces::render::Facet;
-use frame::{AREA, BANDS, FACETS, Picture, ROWS};
+use frame::{AREA, BANDS, Picture, ROWS};
+
+/// Facets of a list: the frame has 992.
+const FACETS: usize = 1000;
 
 /// A whole frame, and a list.
 type Buffers = frame::Buffers<{ AREA.pixels() }, FACETS, { FACETS + BANDS }>;

@@ -1,6 +1,6 @@
 //! Instructions under QEMU against `tests/budgets.txt`, compared exactly: `examples/fw_bench.rs` and `fw_cost.rs` for v6-M
 //! code, M4 and RV32. Prints the tables of instructions a point: `cargo test --test firmware_bench -- --nocapture`.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::duplicate_mod)]
 
 #[path = "common/budgets.rs"]
 #[allow(dead_code)]

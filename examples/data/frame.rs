@@ -17,8 +17,8 @@ pub(crate) const BAND: usize = (AREA.width * ROWS) as usize;
 /// Bands of a frame.
 pub(crate) const BANDS: usize = AREA.height.div_ceil(ROWS) as usize;
 
-/// The most facets of a list: the frame has 992, and each of its two parts 669 or fewer.
-pub(crate) const FACETS: usize = 1000;
+/// The most facets of a list for a part: the upper one has 669, the lower one 366.
+#[allow(dead_code, reason = "`fw_cost` lists the whole frame")]
 pub(crate) const PART_FACETS: usize = 680;
 /// Rows of the upper part.
 const UPPER: u32 = 6 * ROWS;

@@ -1,6 +1,6 @@
 //! The pieces of a patch: split at midpoints while it pays, depth first, without a list of pieces.
 //!
-//! A tensor-product piece of more than [`LARGEST`] points is halved in the direction that promises fewer. A triangle or a
+//! A tensor-product piece of more than [`LARGEST`] points is halved in the direction of more steps. A triangle or a
 //! rational piece is split (a triangle into quarters) if its parts cost less together than it does alone, where a piece
 //! costs the points of its cheapest hole-free sampling and [`SETUP`]. What does not fit 64 bits is quartered. Nothing but
 //! the piece enters the decision, so every band finds the same pieces.
@@ -12,8 +12,8 @@ use crate::num::I16F16;
 use crate::patch::{MAX_DEGREE, Surface, SurfaceNet};
 use crate::subdivide::{Cut, Direction, Half, Quarter, Source, part_net};
 
-/// The most points of a polynomial tensor-product piece: about what a bicubic can have with 32-bit accumulators, which
-/// take half the instructions of wider ones on a Cortex-M.
+/// The most points of a polynomial tensor-product piece: with more, points are wasted where a piece is short; with fewer,
+/// setting up pieces costs more than the points that it saves.
 const LARGEST: u64 = 370;
 
 /// What setting up another piece counts for, in points.

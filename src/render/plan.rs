@@ -53,7 +53,7 @@ impl<'a> Plan<'a> {
     pub(super) fn walk<V: Visit>(&self, visitor: V) {
         match (self.width, self.form.weights().is_some()) {
             (Width::Cubic32 | Width::Cubic64, false) => {
-                run::<_, _, 4>(Residual::<i64>::of(&self.budget), self, visitor)
+                run::<_, _, 4>(Residual::<i64>::of(&self.budget), self, visitor);
             }
             (Width::Quintic64, false) => run::<_, _, 6>(Residual::<i64>::of(&self.budget), self, visitor),
             (Width::Full64, false) => run::<_, _, 9>(Residual::<i64>::of(&self.budget), self, visitor),

@@ -279,7 +279,7 @@ impl<'a, S: Surface> Scene<'a, S> {
         let mut statistics = Statistics::default();
         if self.style.lines() == Some(true) {
             self.each_visible(tile, |tile, patch| {
-                self.trace(self.fill, tile, paint, patch, Ink::Occlude, &mut statistics)
+                self.trace(self.fill, tile, paint, patch, Ink::Occlude, &mut statistics);
             });
         }
         self.each_visible(tile, |tile, index| {
