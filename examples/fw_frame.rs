@@ -2,7 +2,7 @@
 //! PPM on standard output (`mps2-an386`, semihosting); at the end the RAM that it took, on standard error.
 //!
 //! ```sh
-//! export CARGO_PROFILE_RELEASE_OPT_LEVEL=s # at level 3 it exceeds the 256 KB of memory.x
+//! export CARGO_PROFILE_RELEASE_OPT_LEVEL=s # 48 KB of flash, by either fill
 //! cargo run --release --target thumbv7em-none-eabihf --example fw_frame > teapot.ppm
 //! FW_FRAME_FILL=grid cargo run --release --target thumbv7em-none-eabihf --example fw_frame > teapot.ppm
 //! ```
