@@ -208,6 +208,11 @@ impl<'n> Piece<'n> {
                 let mut room = [Point3::ORIGIN; 16];
                 room.iter_mut().zip(points).for_each(|(to, from)| *to = *from);
                 piece.set_up(&room);
+                // Columns that there are not: where the last one is, so that a row's control values bound it.
+                for columns in &mut piece.columns {
+                    let last = columns[degrees[0] & 3];
+                    columns.iter_mut().skip(degrees[0] + 1).for_each(|column| *column = last);
+                }
             }
         }
         piece
