@@ -2,7 +2,7 @@
 //! PPM on standard output (`mps2-an386`, semihosting); at the end the RAM that it took, on standard error.
 //!
 //! ```sh
-//! export CARGO_PROFILE_RELEASE_OPT_LEVEL=s # at level 3 it exceeds the 256 KB of memory.x
+//! export CARGO_PROFILE_RELEASE_OPT_LEVEL=s # 48 KB of flash, by either fill
 //! cargo run --release --target thumbv7em-none-eabihf --example fw_frame > teapot.ppm
 //! FW_FRAME_FILL=grid cargo run --release --target thumbv7em-none-eabihf --example fw_frame > teapot.ppm
 //! ```
@@ -19,26 +19,31 @@ pub(crate) mod teapot;
 /// Exact points, or a grid of facets.
 #[allow(dead_code, reason = "tests draw both")]
 const GRID: bool = matches!(option_env!("FW_FRAME_FILL"), Some(fill) if matches!(fill.as_bytes(), b"grid"));
+/// Facets of the list, if there is one.
+const FACETS: usize = if GRID { frame::PART_FACETS } else { 0 };
+const LINKS: usize = if GRID { FACETS + frame::BANDS } else { 0 };
+
+type Buffers = frame::Buffers<{ frame::BAND }, FACETS, LINKS>;
 
 #[cfg(not(target_os = "none"))]
 fn main() -> std::io::Result<()> {
     use std::io::Write;
     let mut bytes = frame::PPM_HEAD.to_vec();
-    let mut buffers = Box::new(frame::Buffers::new());
-    let drawn = frame::draw(GRID, &mut buffers, |row| bytes.extend_from_slice(&frame::ppm_row(row)));
+    let mut buffers = Box::new(Buffers::new());
+    let drawn = frame::draw::<GRID, _, _>(&mut buffers, |row| bytes.extend_from_slice(&frame::ppm_row(row)));
     drawn.ok_or_else(|| std::io::Error::other("the frame was refused"))?;
     std::io::stdout().write_all(&bytes)
 }
 
 #[cfg(all(target_os = "none", target_arch = "arm"))]
 mod board {
-    use crate::frame;
+    use crate::{Buffers, GRID, frame};
     use core::cell::RefCell;
     use core::fmt::Write;
     use cortex_m::interrupt::Mutex;
     use cortex_m_semihosting::{debug, hio};
 
-    static BUFFERS: Mutex<RefCell<frame::Buffers>> = Mutex::new(RefCell::new(frame::Buffers::new()));
+    static BUFFERS: Mutex<RefCell<Buffers>> = Mutex::new(RefCell::new(Buffers::new()));
     const PAINT: u32 = 0xA5A5_5A5A;
 
     unsafe extern "C" {
@@ -83,7 +88,7 @@ mod board {
         let mut sent = true;
         cortex_m::interrupt::free(|token| {
             let mut buffers = BUFFERS.borrow(token).try_borrow_mut().ok()?;
-            frame::draw(crate::GRID, &mut buffers, |row| sent &= send(&mut out, row))
+            frame::draw::<GRID, _, _>(&mut buffers, |row| sent &= send(&mut out, row))
         })?;
         writeln!(hio::hstderr().ok()?, "RAM {}", used()).ok()?;
         sent.then_some(())

@@ -97,7 +97,7 @@ pub(crate) struct Three;
 #[cfg(feature = "defmt")]
 #[test]
 fn generic_types_need_it_of_no_parameter() {
-    use embedded_surfaces::graphics::{Model, Ramps};
+    use embedded_surfaces::graphics::{Model, Palette, Ramps};
     use embedded_surfaces::patch::{
         RationalCurve, RationalCurveNet, RationalTensor, RationalTensorNet, RationalTriangle, RationalTriangleNet,
     };
@@ -118,4 +118,5 @@ fn generic_types_need_it_of_no_parameter() {
     can_be_logged::<Tile<'_, Bare>>();
     can_be_logged::<Model<'_, Bare, Bare>>();
     can_be_logged::<Ramps<'_, Bare>>();
+    can_be_logged::<Palette<Bare>>();
 }

@@ -1,12 +1,12 @@
-//! The 320 × 240 teapot of `fw_frame` in bands of 16 rows: what the board draws, and what the host draws to compare.
+//! The 320 × 240 teapot of `fw_frame` and `fw_cost`: what boards draw, and what hosts draw to compare.
 
 use crate::teapot;
-use embedded_graphics_core::pixelcolor::{Rgb565, RgbColor, WebColors};
-use embedded_surfaces::geometry::View;
-use embedded_surfaces::graphics::Material;
+use embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
+use embedded_surfaces::geometry::{Affine, View};
+use embedded_surfaces::graphics::Palette;
 use embedded_surfaces::num::I16F16;
 use embedded_surfaces::patch::{BicubicPatch, Tensor};
-use embedded_surfaces::render::{Area, Cull, Frame, Light, Scene, Style};
+use embedded_surfaces::render::{Area, Cull, Facet, Frame, Light, Scene, Style};
 use embedded_surfaces::subdivide::PatchTopology;
 
 pub(crate) const AREA: Area = Area { x: 0, y: 0, width: 320, height: 240 };
@@ -14,6 +14,17 @@ pub(crate) const AREA: Area = Area { x: 0, y: 0, width: 320, height: 240 };
 pub(crate) const ROWS: u32 = 16;
 /// Pixels of a band.
 pub(crate) const BAND: usize = (AREA.width * ROWS) as usize;
+/// Bands of a frame.
+pub(crate) const BANDS: usize = AREA.height.div_ceil(ROWS) as usize;
+
+/// The most facets of a list for a part: the upper one has 669, the lower one 366.
+#[allow(dead_code, reason = "`fw_cost` lists the whole frame")]
+pub(crate) const PART_FACETS: usize = 680;
+/// Rows of the upper part.
+const UPPER: u32 = 6 * ROWS;
+
+/// A frame as it is drawn.
+pub(crate) type Picture<'a> = Frame<'a, BicubicPatch, Palette<Rgb565>>;
 
 /// How the patches meet, found by the compiler: the model's nets are whole numbers in flash.
 static EDGES: [PatchTopology; 32] = match Tensor::topology(&teapot::MODEL) {
@@ -21,42 +32,85 @@ static EDGES: [PatchTopology; 32] = match Tensor::topology(&teapot::MODEL) {
     Err(_) => panic!("the teapot's parts have two sides"),
 };
 
-/// What a frame needs: 6 KB of patches, and for a band 10 KB of colours and 10 KB of depths.
-pub(crate) struct Buffers {
-    patches: [BicubicPatch; 32],
-    colour: [Rgb565; BAND],
-    depth: [u16; BAND],
+/// `Rgb565::CSS_BURLY_WOOD` at all levels, as a `Material` darkens it; in flash.
+pub(crate) static PAINT: Palette<Rgb565> = {
+    const fn scaled(channel: u32, level: u32) -> u8 {
+        ((2 * channel * level + 255) / 510) as u8
+    }
+    let (mut colours, mut level) = ([Rgb565::BLACK; 256], 0);
+    while level < 256 {
+        colours[level as usize] = Rgb565::new(scaled(27, level), scaled(45, level), scaled(16, level));
+        level += 1;
+    }
+    Palette { colours }
+};
+
+/// What a frame needs: 6 KB of patches, two bytes of colour and two of depth for each pixel of a band, and for a list of
+/// facets 32 bytes a facet and two bytes for each facet and each band.
+pub(crate) struct Buffers<const PIXELS: usize, const FACETS: usize, const LINKS: usize> {
+    pub(crate) patches: [BicubicPatch; 32],
+    pub(crate) facets: [Facet; FACETS],
+    pub(crate) links: [u16; LINKS],
+    pub(crate) colour: [Rgb565; PIXELS],
+    pub(crate) depth: [u16; PIXELS],
 }
 
-impl Buffers {
+impl<const PIXELS: usize, const FACETS: usize, const LINKS: usize> Buffers<PIXELS, FACETS, LINKS> {
     pub(crate) const fn new() -> Self {
-        Self { patches: [teapot::BLANK; 32], colour: [Rgb565::BLACK; BAND], depth: [0; BAND] }
+        Self {
+            patches: [teapot::BLANK; 32],
+            facets: [Facet::EMPTY; FACETS],
+            links: [0; LINKS],
+            colour: [Rgb565::BLACK; PIXELS],
+            depth: [0; PIXELS],
+        }
     }
 }
 
-/// The patches in the default view; out of line, so that its stack is free again when patches are drawn.
+/// The default view of the whole model, from the model's units to pixels.
 #[inline(never)]
-fn place(patches: &mut [BicubicPatch; 32]) -> Option<()> {
+pub(crate) fn view() -> Option<Affine> {
     let fit = I16F16::from_bits(60_293); // 0.92
-    let map = View::default().fit(teapot::vertices(), AREA.width, AREA.height, fit).ok()?;
-    teapot::map_into(&map, patches).ok()
+    View::default().fit(teapot::vertices(), AREA.width, AREA.height, fit).ok()
 }
 
-/// Draws the default view, back faces culled; `row` gets the rows of the picture from the top. `None` if anything was
-/// refused.
-pub(crate) fn draw(grid: bool, buffers: &mut Buffers, mut row: impl FnMut(&[Rgb565])) -> Option<()> {
-    let Buffers { patches, colour, depth } = buffers;
-    place(patches)?;
-    let (light, style) = (Light::default(), Style::Shaded);
-    let scene = if grid {
-        Scene::grid(patches, &EDGES, I16F16::ONE, light, style).ok()?
-    } else {
-        Scene::new(patches, light, style).ok()?.with_topology(&EDGES).ok()?
-    };
-    let paint = Material { colour: Rgb565::CSS_BURLY_WOOD };
-    let mut frame = Frame::new(scene.with_cull(Cull::Back), &paint, Rgb565::BLACK, AREA, ROWS).ok()?;
-    while let Some(band) = frame.next_band(colour, depth).ok()? {
-        band.pixels().chunks_exact(AREA.width as usize).for_each(&mut row);
+/// Maps the control points; out of line, so that its stack is free again when patches are drawn.
+#[inline(never)]
+pub(crate) fn place(map: &Affine, patches: &mut [BicubicPatch; 32]) -> Option<()> {
+    teapot::map_into(map, patches).ok()
+}
+
+/// A part of the frame by exact points, back faces culled, in bands of so many rows.
+pub(crate) fn exact(patches: &[BicubicPatch; 32], area: Area, rows: u32) -> Option<Picture<'_>> {
+    let scene = Scene::new(patches, Light::default(), Style::Shaded).ok()?.with_topology(&EDGES).ok()?;
+    Frame::new(scene.with_cull(Cull::Back), &PAINT, Rgb565::BLACK, area, rows).ok()
+}
+
+/// The same by facets within a pixel of the surface.
+pub(crate) fn grid(patches: &[BicubicPatch; 32], area: Area, rows: u32) -> Option<Picture<'_>> {
+    let scene = Scene::grid(patches, &EDGES, I16F16::ONE, Light::default(), Style::Shaded).ok()?;
+    Frame::new(scene.with_cull(Cull::Back), &PAINT, Rgb565::BLACK, area, rows).ok()
+}
+
+/// Draws the default view in bands, by facets if `GRID`; `row` gets the rows of the picture from the top. `None` if
+/// anything was refused.
+///
+/// The two parts are frames of their own: a list of facets then takes two thirds of the room, and no pixel changes.
+pub(crate) fn draw<const GRID: bool, const FACETS: usize, const LINKS: usize>(
+    buffers: &mut Buffers<BAND, FACETS, LINKS>,
+    mut row: impl FnMut(&[Rgb565]),
+) -> Option<()> {
+    let Buffers { patches, facets, links, colour, depth } = buffers;
+    place(&view()?, patches)?;
+    for area in [Area { height: UPPER, ..AREA }, Area { y: UPPER as i32, height: AREA.height - UPPER, ..AREA }] {
+        let mut frame = if GRID {
+            grid(patches, area, ROWS)?.with_facets(&mut *facets, &mut *links).ok()?
+        } else {
+            exact(patches, area, ROWS)?
+        };
+        while let Some(band) = frame.next_band(colour, depth).ok()? {
+            band.pixels().chunks_exact(AREA.width as usize).for_each(&mut row);
+        }
     }
     Some(())
 }

@@ -20,14 +20,16 @@ pub(crate) fn patches(map: &Affine) -> Result<[BicubicPatch; 32], GeometryError>
 
 /// The same where they are to be.
 pub(crate) fn map_into(map: &Affine, out: &mut [BicubicPatch; 32]) -> Result<(), GeometryError> {
+    // Each vertex once: neighbours share them.
+    let mut mapped = [Point3::ORIGIN; VERTICES.len()];
+    for (mapped, vertex) in mapped.iter_mut().zip(vertices()) {
+        *mapped = map.apply(&vertex)?;
+    }
     for (out, indices) in out.iter_mut().zip(&PATCHES) {
-        let mut points = [[Point3::ORIGIN; 4]; 4];
-        for (point, index) in points.as_flattened_mut().iter_mut().zip(indices) {
-            let [x, y, z] = VERTICES.get(usize::from(*index)).copied().unwrap_or_default();
-            *point = map.apply(&Point3::from_ints(x, y, z))?;
-        }
+        let point = |k: usize| mapped.get(usize::from(indices[k])).copied().unwrap_or(Point3::ORIGIN);
+        let row = |k: usize| [point(k), point(k + 1), point(k + 2), point(k + 3)];
         // Mapped points are legal, so the net is.
-        *out = BicubicPatch::new(points).unwrap_or(BLANK);
+        *out = BicubicPatch::new([row(0), row(4), row(8), row(12)]).unwrap_or(BLANK);
     }
     Ok(())
 }

@@ -7,7 +7,7 @@ use embedded_surfaces::graphics::embedded_graphics_core::pixelcolor::{
 };
 use embedded_surfaces::graphics::embedded_graphics_core::prelude::*;
 use embedded_surfaces::graphics::embedded_graphics_core::primitives::{PointsIter, Rectangle};
-use embedded_surfaces::graphics::{AnyCurveNet, BezierCurve, Material, Mix, Model, Ramps, Shade, Stroke};
+use embedded_surfaces::graphics::{AnyCurveNet, BezierCurve, Material, Mix, Model, Palette, Ramps, Shade, Stroke};
 use embedded_surfaces::patch::Surface;
 use embedded_surfaces::render::{Area, Band, Fragment, Frame, Light, Paint, Scene, Style};
 
@@ -85,6 +85,8 @@ fn colours(sum: &mut Sum) {
         }
         let at = Fragment { x: 1, y: 2, patch: 0, shade };
         sum.add(Paint::pixel(&Material { colour: Rgb565::YELLOW }, at).into_storage());
+        let greys = Palette::from_fn(|level| Rgb565::new(level >> 3, level >> 2, level >> 3));
+        sum.add(Paint::pixel(&greys, at).into_storage());
     }
 }
 

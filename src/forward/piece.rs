@@ -15,11 +15,43 @@ const LEAST_FRACTION: u32 = 7;
 /// How often z may be halved for a narrower accumulator: it then has at least 4 fraction bits.
 const MOST_HALVINGS: u32 = 3;
 
-/// The bound of a count with 2^-7 + 2^-11 more of itself. A lattice point is within 2^-8 + 2^-13 of the patch: half a
-/// unit of [`LEAST_FRACTION`] bits, and 2^-17 for each of at most 16 roundings at subdivision. So neighbours, also across
-/// a seam, are d = 2^-7 + 2^-12 farther apart than the bound says, and a count has to exceed bound/(1 − d).
-fn with_slack(bound: u32) -> u32 {
-    bound + (bound >> 7) + (bound >> 11)
+/// How far lattice points may be from the patch: neighbours, also across a seam, are up to d = 2^-7 + 2^-12 or, where points
+/// are exact, 2^-12 farther apart than the bound says, and a count has to exceed bound/(1 − d).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Slack {
+    /// 2^-13: 2^-17 for each of at most 16 roundings at subdivision.
+    Exact,
+    /// And 2^-8, half a unit of [`LEAST_FRACTION`] bits, in nets that are rounded.
+    Rounded,
+}
+
+impl Slack {
+    /// Points are exact where a piece is of degree 3 or less; rational ones have the other slack.
+    fn of(net: &SurfaceNet<'_>) -> Self {
+        let (m, h) = net.degrees();
+        if matches!(net, SurfaceNet::Tensor(_)) && m <= 3 && h <= 3 { Self::Exact } else { Self::Rounded }
+    }
+
+    /// The bound with 2^-11, or 2^-7 and 2^-11, more of itself.
+    fn more(self, bound: u32) -> u32 {
+        match self {
+            Self::Exact => bound + (bound >> 11) + 1,
+            Self::Rounded => bound + (bound >> 7) + (bound >> 11),
+        }
+    }
+
+    /// A count, as a bound, less as much.
+    fn less(self, n: u32) -> u32 {
+        match self {
+            Self::Exact => n - (n >> 11) - 1,
+            Self::Rounded => n - (n >> 7) - (n >> 11) - 1,
+        }
+    }
+
+    /// floor(slope with slack) + 1 steps.
+    fn count(self, slope: u32) -> u32 {
+        more_than(self.more(slope))
+    }
 }
 
 /// Slopes are counted in 2^-9: differences of coordinates cut to 9 fraction bits have at most 25 bits and are less than
@@ -83,11 +115,6 @@ fn slopes(net: &SurfaceNet<'_>, axis: usize) -> Slopes {
     [largest[0] * m as u32, largest[1] * h as u32, largest[2] * m as u32]
 }
 
-/// floor(slope with slack) + 1 steps.
-fn count(slope: u32) -> u32 {
-    more_than(with_slack(slope))
-}
-
 /// floor(bound) + 1 steps.
 fn more_than(bound: u32) -> u32 {
     (bound >> SHORT) + 1
@@ -98,11 +125,28 @@ fn more_than(bound: u32) -> u32 {
 pub(crate) struct PieceSlopes {
     x: Slopes,
     y: Slopes,
+    slack: Slack,
 }
 
 impl PieceSlopes {
     pub(crate) fn of(net: SurfaceNet<'_>) -> Self {
-        Self { x: slopes(&net, 0), y: slopes(&net, 1) }
+        Self { x: slopes(&net, 0), y: slopes(&net, 1), slack: Slack::of(&net) }
+    }
+
+    /// A bound along all axes, in 2^-9 unit, for a tensor-product net: at least the degree times every difference of
+    /// neighbours, along z up to twice as much.
+    pub(crate) fn steepest(&self, net: SurfaceNet<'_>) -> u32 {
+        let (points, (m, h)) = (net.points(), net.degrees());
+        let z = |p: &Point3| short(p, 2);
+        let mut all = 0;
+        let mut take = |p: &Point3, q: &Point3| all |= (z(p) - z(q)) ^ ((z(p) - z(q)) >> 31);
+        points.iter().zip(points.get(h + 1..).unwrap_or_default()).for_each(|(p, q)| take(p, q));
+        for row in points.chunks_exact(h + 1) {
+            row.iter().zip(row.get(1..).unwrap_or_default()).for_each(|(p, q)| take(p, q));
+        }
+        // One more than all bits that differences have; and one unit that each may be off.
+        let xy = self.largest();
+        ((all as u32 + 2) * m.max(h) as u32).max(xy[0]).max(xy[1])
     }
 
     /// The larger of x and y, for each family of net edges.
@@ -110,10 +154,16 @@ impl PieceSlopes {
         core::array::from_fn(|d| self.x[d].max(self.y[d]))
     }
 
+    /// Whether a tensor-product piece takes more steps along s than along r.
+    pub(crate) fn is_longer_along_s(&self) -> bool {
+        let [a, b, _] = self.largest();
+        b > a
+    }
+
     /// No hole-free lattice of a polynomial tensor-product piece has fewer points.
     pub(crate) fn least_points(&self) -> u64 {
         let [a, b, _] = self.largest();
-        u64::from(count(a) + 1) * u64::from(count(b) + 1)
+        u64::from(self.slack.count(a) + 1) * u64::from(self.slack.count(b) + 1)
     }
 
     /// The cheapest hole-free sampling of the piece, with the slack that seams between pieces need; `centres`: those of
@@ -122,7 +172,7 @@ impl PieceSlopes {
         if S::SHAPE.rational && net.weights().is_some() {
             let plain = || Sampling { steps: Steps::hole_free(net), centres };
             let Sampling { steps, centres } = if centres { Sampling::cheapest(net) } else { plain() };
-            let more = |n: u32| (with_slack(n) + 1).min(MAX_STEPS + 1);
+            let more = |n: u32| (self.slack.more(n) + 1).min(MAX_STEPS + 1);
             return Sampling { steps: Steps { r: more(steps.r), s: more(steps.s) }, centres };
         }
         let [a, b, c] = self.largest();
@@ -130,11 +180,11 @@ impl PieceSlopes {
             // The centres of cells make up for the longest family of edges.
             let longest = a.max(b).max(c);
             let others = a.max(b).min(b.max(c)).min(a.max(c));
-            let (coarse, fine) = (count(others), count(longest));
+            let (coarse, fine) = (self.slack.count(others), self.slack.count(longest));
             return cheaper(net, Steps { r: fine, s: fine }, centres.then_some(Steps { r: coarse, s: coarse }));
         }
-        let coarse = Steps { r: count(a), s: count(b) };
-        cheaper(net, tensor_steps(net.points(), net.degrees(), a, b), centres.then_some(coarse))
+        let coarse = Steps { r: self.slack.count(a), s: self.slack.count(b) };
+        cheaper(net, tensor_steps(net.points(), net.degrees(), a, b, self.slack), centres.then_some(coarse))
     }
 
     /// The turn of a lattice whose rows change y the least: then bands leave out the most of them. A triangle with centres
@@ -180,23 +230,29 @@ impl Sampling {
 /// of |S_r|/n_r, |S_s|/n_s < 1; pairs that add up ask for p/n_r + q/n_s < 1. Three candidates: n_r : n_s = a : b
 /// ([`Steps::hole_free`]), the least n_r, the least n_s. With the slack d the sums have to be below 1 − d, which with the
 /// least n_r asks for n_s > q·n_r/((1 − d)·n_r − p).
-fn tensor_steps(points: &[Point3], degrees: (usize, usize), a: u32, b: u32) -> Steps {
+fn tensor_steps(points: &[Point3], degrees: (usize, usize), a: u32, b: u32, slack: Slack) -> Steps {
     let shift = (32 - (a | b).leading_zeros()).saturating_sub(15);
     let [along_r, along_s] = [a, b].map(|bound| (bound >> shift) + 1);
-    let least = [along_r, along_s].map(|bound| count(bound << shift));
+    let least = [along_r, along_s].map(|bound| slack.count(bound << shift));
     // In the unit of p and q.
     let scaled = least.map(|n| (n << SHORT) >> shift);
-    let [room_r, room_s] = scaled.map(|n| n - (n >> 7) - (n >> 11) - 1);
+    let [room_r, room_s] = scaled.map(|n| slack.less(n));
     let enough = along_r * along_s;
     let mut diagonals = [Diagonal::default(); 2];
     let pair = |by_r: i32, by_s: i32| {
         let [p, q] = [by_r, by_s].map(|slope| ((slope.unsigned_abs() + MAX_DEGREE as u32) >> shift) + 1);
+        let diagonal = &mut diagonals[usize::from((by_r < 0) == (by_s < 0))];
+        // Most pairs ask for less than one before.
+        if p <= diagonal.largest[0] && q <= diagonal.largest[1] {
+            return;
+        }
         let sum = p * along_s + q * along_r;
         if sum <= enough {
             return;
         }
-        let diagonal = &mut diagonals[usize::from((by_r < 0) == (by_s < 0))];
-        diagonal.sum = diagonal.sum.max(sum);
+        if sum > diagonal.sum {
+            (diagonal.sum, diagonal.largest) = (sum, [p, q]);
+        }
         diagonal.for_s.raise(q, room_r.saturating_sub(p));
         diagonal.for_r.raise(p, room_s.saturating_sub(q));
     };
@@ -206,7 +262,7 @@ fn tensor_steps(points: &[Point3], degrees: (usize, usize), a: u32, b: u32) -> S
     }
     let candidates = diagonals.into_iter().flat_map(|diagonal| {
         let k = diagonal.sum.max(enough);
-        let balanced = |other: u32| count(k.checked_div(other).unwrap_or(0) << shift);
+        let balanced = |other: u32| slack.count(k.checked_div(other).unwrap_or(0) << shift);
         let beside = |ratio: Ratio, other: u32, least: u32| {
             ratio.times(other).map_or(MAX_STEPS + 1, |bound| more_than(bound << shift).max(least))
         };
@@ -265,6 +321,8 @@ fn each_pair(points: &[Point3], (m, h): (usize, usize), mut f: impl FnMut(i32, i
 #[derive(Clone, Copy, Debug, Default)]
 struct Diagonal {
     sum: u32,
+    /// The pair with the largest sum.
+    largest: [u32; 2],
     for_r: Ratio,
     for_s: Ratio,
 }

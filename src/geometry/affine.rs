@@ -87,9 +87,13 @@ impl Affine {
     /// # Errors
     /// [`GeometryError::OutOfRange`] where the image leaves the legal range of `D`.
     pub fn apply_into<C: Coord, D: Coord>(&self, point: &Point3<C>) -> Result<Point3<D>, GeometryError> {
-        let p = point.to_array().map(|c| i128::from(c.bits()));
+        let short = point.to_array().map(C::bits);
+        let p = short.map(i128::from);
         let image = |axis: Axis| {
             let row = &self.rows[axis as usize];
+            if let Some(image) = short_image::<C, D>(row, short) {
+                return Ok(image);
+            }
             let mut sum = i128::from(row[3].to_bits()) << C::FRACTION_BITS;
             for (factor, c) in row.iter().zip(p) {
                 // |factor|, |c| <= 2^63. Legal points stay below 2^124; others may saturate, and what saturated stays
@@ -106,6 +110,22 @@ impl Affine {
         };
         Ok(Point3::new(image(Axis::X)?, image(Axis::Y)?, image(Axis::Z)?))
     }
+}
+
+/// [`Affine::apply_into`] in 64 bits, where factors are below 1/4, as those of maps onto screens are; `None` for others.
+#[inline(always)]
+fn short_image<C: Coord, D: Coord>(row: &[I32F32; 4], point: [i64; 3]) -> Option<D> {
+    let [a, b, c, shift] = row.map(I32F32::to_bits);
+    let fits = |v: i64, bits: u32| v >= -1 << bits && v < 1 << bits;
+    let is_short = fits(a, 30) && fits(b, 30) && fits(c, 30) && fits(shift, 44);
+    if C::FRACTION_BITS + D::FRACTION_BITS != 32 || !is_short {
+        return None;
+    }
+    // Three products of 31 bits and 30, and 2^60: below 2^63.
+    let product = |factor: i64, c: i64| i64::from(factor as i32) * i64::from(c as i32);
+    let [x, y, z] = point;
+    let sum = product(a, x) + product(b, y) + product(c, z) + (shift << C::FRACTION_BITS);
+    D::from_legal_bits(((sum + (1 << 31)) >> 32).into())
 }
 
 #[cfg(feature = "defmt")]

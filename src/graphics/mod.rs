@@ -7,7 +7,7 @@
 //! * [`BezierCurve`] is a primitive: a curve of any degree, polynomial or rational, at a place. [`Stroke`] draws it, one
 //!   pixel wide or thick; `into_styled` does with the feature `styled`.
 //! * [`Material`] turns levels into colours: every RGB and grey type, and `BinaryColor` by ordered dithering.
-//!
+//! * [`Palette`] looks them up in a table.
 //! * [`Ramps`] mixes colours along a ramp per patch.
 //!
 //! Nothing outside the target's bounding box is ever emitted, and no pixel twice.
@@ -21,6 +21,7 @@ mod colour;
 mod curve;
 mod mask;
 mod model;
+mod palette;
 mod stroke;
 #[cfg(feature = "styled")]
 mod styled;
@@ -29,6 +30,7 @@ mod tiles;
 pub use colour::{Material, Mix, Ramps, Shade};
 pub use curve::{AnyCurveNet, BezierCurve, CurvePixels};
 pub use model::Model;
+pub use palette::Palette;
 pub use stroke::{MAX_STROKE_WIDTH, Stroke};
 #[cfg(feature = "styled")]
 #[cfg_attr(docsrs, doc(cfg(feature = "styled")))]

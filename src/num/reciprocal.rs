@@ -77,6 +77,23 @@ pub(crate) const fn reciprocal(value: u32) -> (u32, u32) {
     (invert(value << (zeros & 31) >> 16), zeros)
 }
 
+/// The upper half of a product, rounded down.
+#[inline(always)]
+pub(crate) fn high(a: i32, b: i32) -> i32 {
+    if HAS_DIVIDER { ((i64::from(a) * i64::from(b)) >> 32) as i32 } else { high_in_halves(a, b) }
+}
+
+#[inline(never)]
+fn high_in_halves(a: i32, b: i32) -> i32 {
+    let (a1, a0, b1, b0) = (a >> 16, a & 0xffff, b >> 16, b & 0xffff);
+    // Opaque to the compiler, which would make a call for a product of 64 bits of the four short ones.
+    let low = core::hint::black_box((a0 as u32).wrapping_mul(b0 as u32) >> 16);
+    // Neither sum reaches 2^31.
+    let middle = (a1 * b0).wrapping_add(low as i32);
+    let other = (a0 * b1).wrapping_add(middle & 0xffff);
+    a1 * b1 + (middle >> 16) + (other >> 16)
+}
+
 /// ⌊a·b/2^17⌋ for b below 2^16.
 #[inline(always)]
 pub(crate) const fn multiply(a: i32, b: u32) -> i32 {
@@ -113,36 +130,6 @@ pub(crate) fn reciprocal_root(value: u32) -> (u32, u32) {
     let square = ((v >> 16) * ((seed * seed) >> 15)) >> 16;
     let root = (seed * ((3 * (1 << 15) - square) >> 1)) >> 15;
     (root, 16 - zeros / 2)
-}
-
-/// A factor of which upper halves of products are taken.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Factor {
-    factor: u32,
-    /// Its upper and its lower half.
-    halves: [u32; 2],
-}
-
-impl Factor {
-    pub(crate) fn new(factor: u32) -> Self {
-        // Opaque to the compiler, which would make a call for a product of 64 bits of the four short ones.
-        Self { factor, halves: core::hint::black_box([factor >> 16, factor & 0xffff]) }
-    }
-
-    /// The upper half of the product with a number.
-    #[inline(always)]
-    pub(crate) fn high(&self, a: u32) -> u32 {
-        if HAS_DIVIDER { ((u64::from(a) * u64::from(self.factor)) >> 32) as u32 } else { self.high_in_halves(a) }
-    }
-
-    #[inline(always)]
-    fn high_in_halves(&self, a: u32) -> u32 {
-        let ([b1, b0], a1, a0) = (self.halves, a >> 16, a & 0xffff);
-        // Neither sum reaches 2^32.
-        let middle = a1 * b0 + ((a0 * b0) >> 16);
-        let low = a0 * b1 + (middle & 0xffff);
-        a1 * b1 + (middle >> 16) + (low >> 16)
-    }
 }
 
 #[cfg(test)]
@@ -183,9 +170,9 @@ mod tests {
         for k in 0..100_000 {
             let (a, b) = (next(), next());
             let (a, b) = if k % 7 == 0 { (a | 0x7fff_ffff, b | 0xffff) } else { (a, b) };
-            let factor = Factor::new(b);
-            assert_eq!(u64::from(factor.high(a)), (u64::from(a) * u64::from(b)) >> 32);
-            assert_eq!(factor.high_in_halves(a), factor.high(a));
+            let (p, q) = (a as i32, b as i32);
+            assert_eq!(i64::from(high(p, q)), (i64::from(p) * i64::from(q)) >> 32);
+            assert_eq!(high_in_halves(p, q), high(p, q));
             assert_eq!(multiply_in_halves(a as i32, b & 0xffff), multiply(a as i32, b & 0xffff));
             assert_eq!(i64::from(multiply(a as i32, b & 0xffff)), (i64::from(a as i32) * i64::from(b & 0xffff)) >> 17);
         }

@@ -40,15 +40,19 @@ struct Cone {
 }
 
 impl Cone {
-    /// A cone that holds all vectors of `each`, which are not all zero; `None` where none was found.
-    fn around<I: Iterator<Item = Vector>>(each: impl Fn() -> I) -> Option<Self> {
+    /// The least cone that holds all vectors, where they are less than a quarter turn from `middle` and not all zero.
+    #[inline(always)]
+    fn around(middle: Vector, each: impl Iterator<Item = Vector>) -> Option<Self> {
         let mut cone: Option<Self> = None;
-        for v in each() {
-            if v[0].unsigned_abs() >= LONGEST || v[1].unsigned_abs() >= LONGEST {
+        for v in each {
+            if dot(middle, v) <= 0 {
+                if v == [0; 2] {
+                    continue;
+                }
                 return None;
             }
             let Some(Self { right, left }) = &mut cone else {
-                cone = (v != [0; 2]).then_some(Self { right: v, left: v });
+                cone = Some(Self { right: v, left: v });
                 continue;
             };
             if cross(*left, v) > 0 {
@@ -57,18 +61,20 @@ impl Cone {
                 *right = v;
             }
         }
-        let cone = cone.filter(Self::is_less_than_half)?;
-        each().all(|v| cone.holds(v)).then_some(cone)
+        cone
     }
 
-    fn is_less_than_half(&self) -> bool {
-        let turn = cross(self.right, self.left);
-        turn > 0 || (turn == 0 && dot(self.right, self.left) > 0)
-    }
-
-    fn holds(&self, v: Vector) -> bool {
-        let (from_right, to_left) = (cross(self.right, v), cross(v, self.left));
-        from_right >= 0 && to_left >= 0 && (from_right > 0 || to_left > 0 || dot(self.right, v) >= 0)
+    /// [`around`](Self::around) their sum.
+    fn around_sum(each: impl Iterator<Item = Vector> + Clone) -> Option<Self> {
+        let mut sum = [0_i64; 2];
+        for v in each.clone() {
+            if v[0].unsigned_abs() >= LONGEST || v[1].unsigned_abs() >= LONGEST {
+                return None;
+            }
+            sum = [sum[0] + i64::from(v[0]), sum[1] + i64::from(v[1])];
+        }
+        // Fewer than 2^10 vectors.
+        Self::around(sum.map(|c| (c >> 10) as i32), each)
     }
 
     /// The signs of `a × b` over both cones: (never negative, never positive).
@@ -84,7 +90,7 @@ impl Cone {
 }
 
 /// The differences along r, or along s: of a triangle along u and v, both from w.
-fn differences<'n>(net: &SurfaceNet<'n>, along_s: bool) -> impl Iterator<Item = Vector> + 'n {
+fn differences<'n>(net: &SurfaceNet<'n>, along_s: bool) -> impl Iterator<Item = Vector> + Clone + 'n {
     let (points, (m, h), triangle) = (net.points(), net.degrees(), net.is_triangle());
     let mixes = net.weights().is_some();
     let (across, last) = if along_s || triangle { (m, h) } else { (h, m) };
@@ -108,23 +114,58 @@ fn cones(net: &SurfaceNet<'_>) -> Option<(Cone, Cone)> {
     if let (SurfaceNet::Tensor(net), Some(points)) = (net, net.points().first_chunk::<16>())
         && net.degrees() == (3, 3)
     {
-        let along_r: [Vector; 12] = core::array::from_fn(|k| between(&points[k & 15], &points[(k + 4) & 15]));
-        let along_s: [Vector; 12] = core::array::from_fn(|k| {
-            let from = k + k / 3;
-            between(&points[from & 15], &points[(from + 1) & 15])
-        });
-        return Cone::around(|| along_r.iter().copied()).zip(Cone::around(|| along_s.iter().copied()));
+        return bicubic_cones(points);
     }
-    Cone::around(|| differences(net, false)).zip(Cone::around(|| differences(net, true)))
+    Cone::around_sum(differences(net, false)).zip(Cone::around_sum(differences(net, true)))
 }
 
-/// Whether no point of a piece faces the viewer: z of S_r × S_s is nowhere negative, or nowhere positive where that
-/// normal points inwards. Where the cones are too wide to tell, and for rational triangles, the answer is no.
-pub(super) fn faces_away(net: &SurfaceNet<'_>, inward: bool) -> bool {
-    if net.is_triangle() && net.weights().is_some() {
-        return false;
+/// [`cones`] of a bicubic.
+fn bicubic_cones(points: &[Point3; 16]) -> Option<(Cone, Cone)> {
+    let place = |k: usize| [points[k & 15].x.to_bits(), points[k & 15].y.to_bits()];
+    let size = (0..16).map(place).fold(0, |all, [x, y]| all | (x ^ (x >> 31)) | (y ^ (y >> 31)));
+    if size >= (LONGEST >> 1) as i32 {
+        return None;
     }
-    let Some((along_r, along_s)) = cones(net) else { return false };
-    let (never_negative, never_positive) = along_r.signs(&along_s);
-    if inward { never_positive } else { never_negative }
+    let between = |from: usize, to: usize| {
+        let ([x, y], [u, v]) = (place(from), place(to));
+        [u - x, v - y]
+    };
+    // Sums of the differences, a quarter of them.
+    let sum = |ends: [[usize; 2]; 4]| {
+        ends.iter().fold([0; 2], |[x, y]: Vector, [from, to]| {
+            let [u, v] = between(*from, *to);
+            [x + (u >> 2), y + (v >> 2)]
+        })
+    };
+    let along_r = Cone::around(sum([[0, 12], [1, 13], [2, 14], [3, 15]]), (0..12).map(|k| between(k, k + 4)))?;
+    let in_rows = (0..12).map(|k| between(k + k / 3, k + k / 3 + 1));
+    Some((along_r, Cone::around(sum([[0, 3], [4, 7], [8, 11], [12, 15]]), in_rows)?))
+}
+
+/// Which way a piece looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Facing {
+    /// No point of it faces the viewer.
+    Away,
+    /// No point of it faces away.
+    Viewer,
+    /// Where the cones are too wide to tell, and for rational triangles.
+    Unknown,
+}
+
+/// Which way a piece looks: the z of S_r × S_s is nowhere positive where it faces the viewer, or nowhere negative where
+/// that normal points inwards.
+#[inline(never)]
+pub(super) fn facing(net: &SurfaceNet<'_>, inward: bool) -> Facing {
+    if net.is_triangle() && net.weights().is_some() {
+        return Facing::Unknown;
+    }
+    let Some((along_r, along_s)) = cones(net) else { return Facing::Unknown };
+    match along_r.signs(&along_s) {
+        (true, false) if !inward => Facing::Away,
+        (false, true) if inward => Facing::Away,
+        (true, true) => Facing::Away,
+        (true, false) | (false, true) => Facing::Viewer,
+        (false, false) => Facing::Unknown,
+    }
 }

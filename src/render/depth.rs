@@ -35,6 +35,23 @@ impl DepthWindow {
         depth.min(Self::LARGEST.into()) as u16
     }
 
+    /// The depth of ⌊2^bits·z⌋, given in two parts: whole units, and the rest, of any size. `INSIDE`: both [are
+    /// within](Self::is_within).
+    #[inline(always)]
+    pub(super) fn depth_of_parts<const INSIDE: bool>(self, whole: i32, rest: i32) -> u16 {
+        let depth = (whole << self.bits).wrapping_sub(self.offset).wrapping_add(rest);
+        if INSIDE {
+            return (depth as u32 >> self.drop) as u16;
+        }
+        (depth.max(0) >> self.drop).min(Self::LARGEST.into()) as u16
+    }
+
+    /// Whether the depth of these parts, or of a unit more or less, is in the window.
+    pub(super) fn is_within(self, whole: i32, rest: i32) -> bool {
+        let depth = (whole << self.bits).wrapping_sub(self.offset).wrapping_add(rest);
+        depth > 0 && (depth >> self.drop) < i32::from(Self::LARGEST)
+    }
+
     /// The window for z halved so many times: with z' = z/2^k it is told z' + 1/2, which is (z + 2^(k−1))/2^k.
     pub(super) fn halved(self, halvings: u32) -> Self {
         let more = ((1 << halvings) - 1) << self.bits >> 1;

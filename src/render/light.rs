@@ -89,15 +89,11 @@ impl Light {
         level.saturating_add(more as u8)
     }
 
-    /// The level of a surface with this normal vector, of any length.
-    ///
-    /// Components are at most 2^15, so the dot product with a unit vector is at most √3·2^30 and fits 31 bits.
+    /// The level of a surface with this normal vector, of components of at most 2^15.
+    #[inline(always)]
     pub(super) fn level(&self, normal: [i32; 3]) -> u8 {
-        let dot = normal.iter().zip(&self.direction).map(|(n, l)| n * l).sum::<i32>();
-        let square: u32 = normal.iter().map(|n| n.unsigned_abs().pow(2)).sum();
-        let length = square.isqrt() << 7;
-        let above = u32::from(255 - self.ambient) * (dot.max(0) as u32 >> 8) + length / 2;
-        self.ambient.saturating_add(above.checked_div(length).unwrap_or(0) as u8)
+        let (level, is_lit) = self.level_of_lit_side(normal);
+        if is_lit { level } else { self.ambient }
     }
 }
 
@@ -160,7 +156,7 @@ pub(super) fn short<W: Word>(tangent: [W; 3]) -> [i16; 3] {
 }
 
 /// The vector with its components shifted right by one common amount: from −2^bits to 2^bits − 1.
-fn truncate<W: Word>(v: [W; 3], bits: u32) -> [i32; 3] {
+pub(super) fn truncate<W: Word>(v: [W; 3], bits: u32) -> [i32; 3] {
     let magnitude = v.iter().fold(W::ZERO, |all, c| all | (*c ^ (*c >> (<W as Word>::BITS - 1) as usize)));
     let used = <W as Word>::BITS - magnitude.leading_zeros();
     let shift = used.saturating_sub(bits) as usize;

@@ -1,12 +1,11 @@
 //! Lines: iso-parametric curves, control nets, normals.
 
-use super::brush::Canvas;
-use super::depth::DepthWindow;
+use super::brush::Highest;
+use super::fill::Drawing;
 use super::light::Side;
 use super::pen::{Ink, Pen, Rows, normal_inside};
 use super::plan::Plan;
 use super::style::{Lines, Style};
-use super::tile::{Paint, Tile};
 #[cfg(feature = "styled")]
 use crate::forward::Budget;
 use crate::forward::{Form, Fraction, LatticeError, row_count};
@@ -15,16 +14,19 @@ use crate::num::{Coord, I16F16};
 use crate::patch::{Barycentric, CurveNet, Parameter, Surface, SurfaceNet};
 use core::marker::PhantomData;
 
-/// Draws the lines of one patch.
-pub(super) struct LineDrawing<'a, 'b, S, P: Paint> {
-    pub(super) kind: PhantomData<S>,
-    pub(super) tile: &'a mut Tile<'b, P::Pixel>,
-    pub(super) paint: &'a P,
-    pub(super) patch: usize,
-    pub(super) net: SurfaceNet<'a>,
-    pub(super) window: DepthWindow,
-    /// The points walked.
-    pub(super) points: u64,
+/// Draws the lines of one patch of a type `S`.
+#[inline(never)]
+pub(super) fn draw_lines<S: Surface>(drawing: &mut Drawing<'_>) {
+    let style = drawing.shading.style;
+    let mut lines = LineDrawing::<S> { kind: PhantomData, net: drawing.net, drawing };
+    lines.draw(style);
+}
+
+/// The lines of one patch on their way into a tile.
+struct LineDrawing<'a, 'd, S> {
+    kind: PhantomData<S>,
+    net: SurfaceNet<'d>,
+    drawing: &'a mut Drawing<'d>,
 }
 
 /// The lattice whose rows 0, stride, 2·stride, … are the iso-parametric curves of one family.
@@ -65,8 +67,8 @@ pub(super) fn families(net: SurfaceNet<'_>) -> u8 {
     if net.is_triangle() { 3 } else { 2 }
 }
 
-impl<'a, S: Surface, P: Paint> LineDrawing<'a, '_, S, P> {
-    pub(super) fn draw(&mut self, style: Style) {
+impl<S: Surface> LineDrawing<'_, '_, S> {
+    fn draw(&mut self, style: Style) {
         match style {
             Style::Wire(lines) => self.wire(lines),
             Style::Net { .. } => self.control_net(),
@@ -76,19 +78,19 @@ impl<'a, S: Surface, P: Paint> LineDrawing<'a, '_, S, P> {
     }
 
     fn walk(&mut self, plan: &Plan<'_>, rows: Rows) {
-        let (area, colour, depth) = self.tile.parts();
-        let window = self.window;
+        let drawing = &mut *self.drawing;
+        let window = drawing.shading.window;
         plan.draw::<S>(&mut Pen {
-            area,
-            depth,
+            area: drawing.area,
+            depth: drawing.depth,
             window,
             fraction: Fraction::of(plan.budget.scale, window.bits),
             ink: Ink::Line(window.bias()),
             side: Side::Viewer,
             form: &plan.form,
             rows,
-            points: &mut self.points,
-            brush: &mut Canvas { paint: self.paint, patch: self.patch, colour },
+            points: &mut drawing.statistics.points,
+            brush: &mut Highest(drawing.stain),
         });
     }
 

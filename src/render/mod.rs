@@ -23,21 +23,23 @@
 //!
 //! # Pieces
 //! One step count for a whole patch wastes points where it is short, turned away or out of sight. A patch is split at
-//! midpoints ([`subdivide`](crate::subdivide)) until a piece has at most 300 points; a triangle or a rational patch while its parts
+//! midpoints ([`subdivide`](crate::subdivide)) until a piece has at most 370 points; a triangle or a rational patch while its parts
 //! cost less than it does. No list is kept: pieces are walked depth first on a fixed stack ([`stack_bytes`]).
 //!
 //! | teapot, default view | points | points a pixel | pieces |
 //! |---|---|---|---|
-//! | 320 × 240, one frame | 152 040 | 2.31 | 767 |
-//! | the same in 16-row bands | 186 421 | 2.83 | 1406 |
-//! | 640 × 480, one frame | 508 185 | 1.98 | 1535 |
+//! | 320 × 240, one frame | 153 024 | 2.32 | 624 |
+//! | the same in 16-row bands | 193 919 | 2.94 | 1167 |
+//! | 640 × 480, one frame | 511 842 | 1.99 | 1450 |
 //!
-//! *Pixels: distinct ones of each patch, summed. With [`Cull::Back`] the banded frame takes 108 825 points.*
+//! *Pixels: distinct ones of each patch, summed.*
 //!
-//! Positions of a piece are those of its net rounded to at least 7 fraction bits, where that lets 32-bit accumulators do:
-//! a point is within 1/256 + 1/8192 of a pixel of the patch. Its z may count in steps of 2, 4 or 8 units where it moves
-//! faster than x and y. Normals come from the piece's own net, all 16 fraction bits of it. Splitting rounds each control
-//! point once a level, to 2^-17; seams get the same bits on both sides.
+//! A tensor-product piece of degree 3 or less is walked in fixed point of 32 bits, and where that leaves a pixel in doubt
+//! (one point in a thousand) exact arithmetic decides: its points are the exact ones of its net. Positions of other
+//! polynomial pieces are those of the net rounded to at least 7 fraction bits, where that lets 64-bit accumulators do: within
+//! 1/256 + 1/8192 of a pixel of the patch; their z may count in steps of 2, 4 or 8 units where it moves faster than x and y.
+//! Normals come from the piece's own net, all 16 fraction bits of it. Splitting rounds each control point once a level, to
+//! 2^-17; seams get the same bits on both sides.
 //!
 //! # Two fills
 //! | [`Fill`] | what it draws | holes | default teapot, 320 × 240 |
@@ -53,8 +55,8 @@
 //!
 //! # Depth
 //! A `u16` per pixel: 15 bits of depth and one that tells drawn from empty. The depth is the lattice z with k more bits,
-//! (z + 1/2 − z_low)·2^k within two units of what the piece's rounded net says; z_low and k ≤ 8 come from the scene's z
-//! range, so the whole range is used.
+//! (z + 1/2 − z_low)·2^k within one unit of what the piece's net says, or two of what a rounded one says; z_low and k ≤ 8 come
+//! from the scene's z range, so the whole range is used.
 //!
 //! # Lines
 //! Iso-parametric curves are rows of the patch's own exact lattice, at steps of less than a pixel: connected, and no
@@ -62,15 +64,17 @@
 //!
 //! # Shading
 //! Lambert: level = ambient + (255 − ambient)·max(0, N·L), after the depth test. N is turned to the viewer, or with
-//! [`Cull::Back`] outwards. Tangents are sums of Bernstein weights of 30 bits and control differences (rational: exact
-//! forward differences), cut once to 28 bits or more; their cross product is cut once to 15 bits and divided by its
-//! integer length. The level is within 1 of exact arithmetic wherever |S_r × S_s| is at least 1/1000 of its maximum over
+//! [`Cull::Back`] outwards. Tangents of pieces of degree 3 or less are polynomials of 25 bits or more, of others sums of
+//! Bernstein weights of 30 bits and control differences (rational: exact forward differences), cut once to 28 bits or more;
+//! their cross product is cut once to 15 bits and multiplied by a reciprocal of its length. The level is within 1 of exact arithmetic wherever |S_r × S_s| is at least 1/1000 of its maximum over
 //! the piece (within 2 with a [`Gloss`]). Where a tangent vanishes (the pole of a patch with a collapsed side) the normal
 //! 1/64 further inside is taken, for a rational piece that of its control net without weights.
 
 mod brush;
+mod cubic;
 mod cull;
 mod depth;
+mod fill;
 mod frame;
 mod grid;
 mod light;

@@ -35,6 +35,12 @@ pub(super) trait Brush {
     fn dab(&mut self, spot: Spot, normal: Option<Option<[i32; 3]>>);
 }
 
+/// What sets the colour of a pixel by its level.
+pub(super) trait Stain {
+    /// Colours the pixel (x, y), number `index` of the tile.
+    fn stain(&mut self, index: usize, at: [i32; 2], shade: u8);
+}
+
 /// Draws the points of one lattice into a tile. One type for all colours: what a walker is made for.
 pub(super) struct Pen<'p> {
     pub(super) area: Area,

@@ -1,6 +1,6 @@
 //! The pieces of a patch: split at midpoints while it pays, depth first, without a list of pieces.
 //!
-//! A tensor-product piece of more than [`LARGEST`] points is halved in the direction that promises fewer. A triangle or a
+//! A tensor-product piece of more than [`LARGEST`] points is halved in the direction of more steps. A triangle or a
 //! rational piece is split (a triangle into quarters) if its parts cost less together than it does alone, where a piece
 //! costs the points of its cheapest hole-free sampling and [`SETUP`]. What does not fit 64 bits is quartered. Nothing but
 //! the piece enters the decision, so every band finds the same pieces.
@@ -12,9 +12,9 @@ use crate::num::I16F16;
 use crate::patch::{MAX_DEGREE, Surface, SurfaceNet};
 use crate::subdivide::{Cut, Direction, Half, Quarter, Source, part_net};
 
-/// The most points of a polynomial tensor-product piece: about what a bicubic can have with 32-bit accumulators, which
-/// take half the instructions of wider ones on a Cortex-M.
-const LARGEST: u64 = 300;
+/// The most points of a polynomial tensor-product piece: with more, points are wasted where a piece is short; with fewer,
+/// setting up pieces costs more than the points that it saves.
+const LARGEST: u64 = 370;
 
 /// What setting up another piece counts for, in points.
 const SETUP: u64 = 24;
@@ -37,13 +37,23 @@ pub(super) const fn depth(points: usize) -> usize {
     room(points).1
 }
 
+/// What is known of a piece.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Wanted {
+    No,
+    /// Its parts are to be asked for.
+    Yes,
+    /// It faces the viewer everywhere, and so do its parts.
+    Front,
+}
+
 /// What is done with pieces.
 pub(super) trait Pieces {
-    /// Whether a piece is looked at at all.
-    fn wants(&mut self, piece: SurfaceNet<'_>) -> bool;
+    /// Whether a piece is looked at at all; `is_front`: it is a part of one that faces the viewer everywhere.
+    fn wants(&mut self, piece: SurfaceNet<'_>, is_front: bool) -> Wanted;
 
     /// A piece that is not split any further, and room for as many points as it has.
-    fn piece(&mut self, piece: SurfaceNet<'_>, sampling: Sampling, room: &mut [Point3]);
+    fn piece(&mut self, piece: SurfaceNet<'_>, sampling: Sampling, slopes: &PieceSlopes, room: &mut [Point3]);
 
     /// Called when a piece is split.
     fn split(&mut self);
@@ -113,6 +123,7 @@ fn with_room<S: Surface, const LEN: usize, const WEIGHTS: usize, const SLOTS: us
         path: [(Split::R, 0); DEPTH],
         depth: 0,
         deepest: SLOTS - 1,
+        front: 0,
     };
     tree.walk::<S>(pieces);
 }
@@ -151,6 +162,8 @@ struct Tree<'n, 's> {
     path: [(Split, u8); DEPTH],
     depth: usize,
     deepest: usize,
+    /// A bit for each depth: whether the piece there is known to face the viewer.
+    front: u16,
 }
 
 impl Tree<'_, '_> {
@@ -171,10 +184,14 @@ impl Tree<'_, '_> {
     /// Draws the current piece, or says how it is split.
     fn visit<S: Surface>(&mut self, pieces: &mut dyn Pieces) -> Option<Split> {
         let (depth, deepest) = (self.depth, self.deepest);
-        let (piece, slot, weight_slot) = self.current();
-        if !pieces.wants(piece) {
+        // That of the piece above stands one bit lower.
+        let (own, is_front) = (2_u16 << depth, self.front >> depth & 1 == 1);
+        let wanted = pieces.wants(self.current().0, is_front);
+        self.front = if wanted == Wanted::Front { self.front | own } else { self.front & !own };
+        if wanted == Wanted::No {
             return None;
         }
+        let (piece, slot, weight_slot) = self.current();
         let slopes = PieceSlopes::of(piece);
         let (triangles, rational) =
             (S::SHAPE.triangles && piece.is_triangle(), S::SHAPE.rational && piece.weights().is_some());
@@ -182,7 +199,7 @@ impl Tree<'_, '_> {
         // Up to degree 3 any legal net fits 128 bits: (n_r·n_s)^3·2^7·(2K+1) with n below 2^19.
         let fits_always = direct && (S::SHAPE.degree <= 3 || degree(&piece) <= 3);
         if depth < deepest && fits_always && slopes.least_points() > LARGEST {
-            return Some(longer(piece));
+            return Some(halves_of(&slopes));
         }
         let sampling = slopes.sampling::<S>(piece, true);
         let split = if depth == deepest {
@@ -191,12 +208,12 @@ impl Tree<'_, '_> {
             // Both directions at once: what the check of the scene counts on.
             Some(if triangles { Split::Triangles } else { Split::Squares })
         } else if direct {
-            (sampling.points(false) > LARGEST).then(|| longer(piece))
+            (sampling.points(false) > LARGEST).then(|| halves_of(&slopes))
         } else {
             split_that_pays::<S>(source(piece, depth), sampling, slot, weight_slot)
         };
         if split.is_none() {
-            pieces.piece(piece, sampling, slot);
+            pieces.piece(piece, sampling, &slopes, slot);
         }
         split
     }
@@ -254,6 +271,11 @@ fn degree(piece: &SurfaceNet<'_>) -> usize {
 fn source(piece: SurfaceNet<'_>, depth: usize) -> (SurfaceNet<'_>, Source<'_>) {
     let source = Source::of(piece);
     (piece, if depth == 0 { source.with_long_weights() } else { source })
+}
+
+/// Halves of the longer direction.
+fn halves_of(slopes: &PieceSlopes) -> Split {
+    if slopes.is_longer_along_s() { Split::S } else { Split::R }
 }
 
 /// The halves that promise fewer points.

@@ -1,5 +1,6 @@
 //! Which lattices a patch is drawn by, and with which walker.
 
+use super::cubic;
 use super::pen::{NormalPen, Pen};
 use super::pieces::depth;
 use crate::forward::{
@@ -192,7 +193,14 @@ fn lattice<S: Surface>(net: SurfaceNet<'_>, form: &Form<'_>) -> Result<(PieceBud
 ///
 /// # Errors
 /// What the lattice of the patch (rational: undivided; polynomial: split as deep as it goes) does not fit.
+#[inline(always)]
 pub(super) fn check_pieces<S: Surface>(net: SurfaceNet<'_>, normals: bool) -> Result<(), LatticeError> {
+    // Those of degree 3 or less always can.
+    if cubic::suits::<S>(&net) { Ok(()) } else { check_lattices::<S>(net, normals) }
+}
+
+#[inline(never)]
+fn check_lattices<S: Surface>(net: SurfaceNet<'_>, normals: bool) -> Result<(), LatticeError> {
     let sampling = PieceSlopes::of(net).sampling::<S>(net, false);
     if S::SHAPE.rational && net.weights().is_some() {
         return Plan::of(Form::surface(net, (sampling.steps.r(), sampling.steps.s())), normals).map(drop);

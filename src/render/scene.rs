@@ -1,26 +1,23 @@
 //! Scenes: what is drawn, checked once.
 
-use super::brush::{Canvas, Shader, Shading};
-use super::cull::faces_away;
+use super::brush::{Canvas, Shading};
 use super::depth::DepthWindow;
+use super::fill::{Draw, Drawing, fill as fill_exact};
 use super::grid::{self, Facet, Facets, Filler, Recorder, Segments};
-use super::light::{Light, Side};
+use super::light::Light;
 #[cfg(feature = "styled")]
 use super::lines::any_family;
-use super::lines::{LineDrawing, families, family};
-use super::pen::{Ink, Pen, Rows};
-use super::pieces::{Pieces, each_piece};
-use super::plan::{Plan, check_pieces, each_lattice};
+use super::lines::{draw_lines, families, family};
+use super::pen::Ink;
+use super::plan::check_pieces;
 use super::style::{Cull, Fill, Style};
-use super::tangents::Tangents;
 use super::tile::{Area, Paint, Tile};
 use super::{RenderError, Statistics};
-use crate::forward::{Fraction, Kind, LatticeError, Sampling};
-use crate::geometry::{Bounds, Point3};
+use crate::forward::LatticeError;
+use crate::geometry::Bounds;
 use crate::num::{Coord, I16F16};
 use crate::patch::{Surface, SurfaceNet};
 use crate::subdivide::PatchTopology;
-use core::marker::PhantomData;
 
 /// Rounded coordinates of a box: what pixels its points can fall on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,21 +43,6 @@ impl PixelBox {
     }
 }
 
-/// Whether the box of a piece has pixels in an area.
-fn meets(piece: SurfaceNet<'_>, area: &Area) -> bool {
-    let (mut x, mut y) = ((i32::MAX, i32::MIN), (i32::MAX, i32::MIN));
-    for p in piece.points() {
-        x = (x.0.min(p.x.to_bits()), x.1.max(p.x.to_bits()));
-        y = (y.0.min(p.y.to_bits()), y.1.max(p.y.to_bits()));
-    }
-    let overlaps = |(low, high): (i32, i32), start: i32, length: u32| {
-        // Rounded half up; legal coordinates leave room.
-        let [low, high] = [low, high].map(|c| (c + (1 << 15)) >> 16);
-        high >= start && i64::from(low) < i64::from(start) + i64::from(length)
-    };
-    overlaps(y, area.y, area.height) && overlaps(x, area.x, area.width)
-}
-
 /// Patches in screen coordinates, a light and a style; checked once, so that drawing cannot fail.
 ///
 /// ```
@@ -84,6 +66,9 @@ pub struct Scene<'a, S> {
     cull: Cull,
     topology: &'a [PatchTopology],
     segments: Option<Segments>,
+    /// What draws exact points and lines, in scenes that may have them.
+    fill: Option<Draw>,
+    lines: Option<Draw>,
 }
 
 impl<S> Clone for Scene<'_, S> {
@@ -99,10 +84,12 @@ impl<'a, S: Surface> Scene<'a, S> {
     ///
     /// # Errors
     /// [`RenderError::Patch`] for the first patch whose hole-free lattice needs more than 128 bits.
+    #[inline(always)]
     pub fn new(patches: &'a [S], light: Light, style: Style) -> Result<Self, RenderError> {
-        let scene = Self::unchecked(patches, light, style);
-        scene.check_exact()?;
-        Ok(scene)
+        // Inlined: where the style is a constant, what it does not draw by is not linked.
+        let scene = Self { fill: Some(fill_exact::<S>), ..Self::unchecked(patches, light, style) };
+        scene.check_fill()?;
+        if style.lines().is_some() { scene.with_lines() } else { Ok(scene) }
     }
 
     /// A scene filled by facets from the start: what [`new`](Self::new), [`with_topology`](Self::with_topology) and
@@ -125,6 +112,7 @@ impl<'a, S: Surface> Scene<'a, S> {
     /// # Errors
     /// Those of [`with_topology`](Self::with_topology) and [`with_fill`](Self::with_fill), and for a style of lines
     /// those of [`new`](Self::new).
+    #[inline(always)]
     pub fn grid(
         patches: &'a [S],
         topology: &'a [PatchTopology],
@@ -134,16 +122,34 @@ impl<'a, S: Surface> Scene<'a, S> {
     ) -> Result<Self, RenderError> {
         let scene = Self { topology, ..Self::unchecked(patches, light, style) };
         if style.lines().is_some() {
-            scene.check_exact()?;
+            scene.check_fill()?;
+            return Self { fill: Some(fill_exact::<S>), ..scene }.with_lines()?.with_segments(tolerance);
         }
-        scene.with_fill(Fill::Grid { tolerance })
+        scene.with_segments(tolerance)
     }
 
-    fn check_exact(&self) -> Result<(), RenderError> {
-        for (index, patch) in self.patches.iter().enumerate() {
-            check::<S>(patch.surface(), self.style).map_err(|error| RenderError::Patch { index, error })?;
+    /// Every patch can be drawn by exact points, if the style needs that.
+    fn check_fill(&self) -> Result<(), RenderError> {
+        if self.style.lines() == Some(false) {
+            return Ok(());
         }
-        Ok(())
+        self.each_patch(|net| check_pieces::<S>(net, self.style.needs_normals()))
+    }
+
+    /// The same scene with its lines, checked.
+    #[inline(never)]
+    fn with_lines(self) -> Result<Self, RenderError> {
+        if let Style::Wire(lines) = self.style {
+            self.each_patch(|net| (0..families(net)).try_for_each(|turn| family(net, lines, turn).map(drop)))?;
+        }
+        Ok(Self { lines: Some(draw_lines::<S>), ..self })
+    }
+
+    fn each_patch(&self, check: impl Fn(SurfaceNet<'a>) -> Result<(), LatticeError>) -> Result<(), RenderError> {
+        self.patches
+            .iter()
+            .enumerate()
+            .try_for_each(|(index, patch)| check(patch.surface()).map_err(|error| RenderError::Patch { index, error }))
     }
 
     fn unchecked(patches: &'a [S], light: Light, style: Style) -> Self {
@@ -155,7 +161,7 @@ impl<'a, S: Surface> Scene<'a, S> {
         let pixels = all.map(|b| PixelBox::of(&b));
         let window = pixels.map_or(DepthWindow::of(0, 0), |p| DepthWindow::of(p.min[2], p.max[2]));
         let cull = Cull::None;
-        Self { patches, light, style, window, pixels, cull, topology: &[], segments: None }
+        Self { patches, light, style, window, pixels, cull, topology: &[], segments: None, fill: None, lines: None }
     }
 
     /// The same scene with these faces drawn. Culling takes part in filling and in hiding lines; lines themselves are
@@ -175,7 +181,7 @@ impl<'a, S: Surface> Scene<'a, S> {
         if topology.len() != self.patches.len() {
             return Err(RenderError::Topology { patches: self.patches.len(), given: topology.len() });
         }
-        Ok(Self { topology, segments: None, ..self })
+        Ok(Self { topology, segments: None, fill: Some(fill_exact::<S>), ..self })
     }
 
     /// The same scene, filled by points or by facets. Styles of lines ignore it.
@@ -187,10 +193,16 @@ impl<'a, S: Surface> Scene<'a, S> {
     /// for a tolerance that is not positive, [`RenderError::Segments`] and [`RenderError::Patch`] for a patch whose
     /// grid has more than 1024 segments in a direction or does not fit the engine.
     pub fn with_fill(self, fill: Fill) -> Result<Self, RenderError> {
-        let Fill::Grid { tolerance } = fill else {
-            self.check_exact()?;
-            return Ok(Self { segments: None, ..self });
-        };
+        match fill {
+            Fill::Exact => {
+                self.check_fill()?;
+                Ok(Self { segments: None, fill: Some(fill_exact::<S>), ..self })
+            }
+            Fill::Grid { tolerance } => self.with_segments(tolerance),
+        }
+    }
+
+    fn with_segments(self, tolerance: I16F16) -> Result<Self, RenderError> {
         if self.topology.len() != self.patches.len() {
             return Err(RenderError::Topology { patches: self.patches.len(), given: self.topology.len() });
         }
@@ -198,7 +210,7 @@ impl<'a, S: Surface> Scene<'a, S> {
         let scene = Self { segments: Some(segments), ..self };
         for index in 0..self.patches.len() {
             if let Some(patch) = scene.grid_patch(index) {
-                let fits = grid::check(patch.net, patch.counts);
+                let fits = grid::check::<S>(patch.net, patch.counts);
                 fits.map_err(|error| RenderError::Patch { index, error })?;
             }
         }
@@ -234,7 +246,7 @@ impl<'a, S: Surface> Scene<'a, S> {
                 && PixelBox::of(&patch.net.bounds()).meets(&area, 0)
             {
                 statistics.patches += 1;
-                statistics += grid::facets(&patch, (&self.light, self.style, self.window), &mut recorder);
+                statistics += grid::facets::<S>(&patch, (&self.light, self.style, self.window), &mut recorder);
             }
         }
         Ok(Some((Facets::of(recorder, links, rows)?, statistics)))
@@ -266,21 +278,18 @@ impl<'a, S: Surface> Scene<'a, S> {
     pub fn draw<P: Paint>(&self, tile: &mut Tile<'_, P::Pixel>, paint: &P) -> Statistics {
         let mut statistics = Statistics::default();
         if self.style.lines() == Some(true) {
-            self.each_visible(tile, |tile, patch, net| {
-                self.fill(tile, paint, (patch, net), Ink::Occlude, &mut statistics);
+            self.each_visible(tile, |tile, patch| {
+                self.trace(self.fill, tile, paint, patch, Ink::Occlude, &mut statistics);
             });
         }
-        self.each_visible(tile, |tile, patch, net| {
+        self.each_visible(tile, |tile, index| {
             statistics.patches += 1;
             if self.style.lines().is_some() {
-                let mut lines =
-                    LineDrawing::<S, P> { kind: PhantomData, tile, paint, patch, net, window: self.window, points: 0 };
-                lines.draw(self.style);
-                statistics.points += lines.points;
-            } else if let Some(patch) = self.grid_patch(patch) {
+                self.trace(self.lines, tile, paint, index, Ink::Fill, &mut statistics);
+            } else if let Some(patch) = self.grid_patch(index) {
                 statistics += self.fill_facets(tile, paint, &patch);
             } else {
-                self.fill(tile, paint, (patch, net), Ink::Fill, &mut statistics);
+                self.trace(self.fill, tile, paint, index, Ink::Fill, &mut statistics);
             }
         });
         statistics
@@ -290,110 +299,42 @@ impl<'a, S: Surface> Scene<'a, S> {
     #[inline(never)]
     fn fill_facets<P: Paint>(&self, tile: &mut Tile<'_, P::Pixel>, paint: &P, patch: &grid::Patch<'a>) -> Statistics {
         let mut filler = Filler::new(tile, paint);
-        grid::facets(patch, (&self.light, self.style, self.window), &mut filler)
+        grid::facets::<S>(patch, (&self.light, self.style, self.window), &mut filler)
     }
 
     /// Calls `f` for every patch whose box meets the tile.
-    fn each_visible<'b, C: Copy>(
-        &self,
-        tile: &mut Tile<'b, C>,
-        mut f: impl FnMut(&mut Tile<'b, C>, usize, SurfaceNet<'a>),
-    ) {
+    fn each_visible<'b, C: Copy>(&self, tile: &mut Tile<'b, C>, mut f: impl FnMut(&mut Tile<'b, C>, usize)) {
         for (index, patch) in self.patches.iter().enumerate() {
-            let net = patch.surface();
-            if PixelBox::of(&net.bounds()).meets(&tile.area(), self.style.reach()) {
-                f(tile, index, net);
+            if PixelBox::of(&patch.surface().bounds()).meets(&tile.area(), self.style.reach()) {
+                f(tile, index);
             }
         }
     }
 
-    /// Draws the pieces of one patch that meet the tile.
+    /// Draws one patch by exact points, or its lines.
     #[inline(never)]
-    fn fill<P: Paint>(
+    fn trace<P: Paint>(
         &self,
+        draw: Option<Draw>,
         tile: &mut Tile<'_, P::Pixel>,
         paint: &P,
-        (patch, net): (usize, SurfaceNet<'a>),
+        patch: usize,
         ink: Ink,
         statistics: &mut Statistics,
     ) {
-        let inward = self.topology.get(patch).is_some_and(PatchTopology::is_inward);
-        let shading = Shading { light: &self.light, style: self.style, window: self.window };
-        each_piece::<S>(
-            net,
-            &mut Filling::<S, P> {
-                kind: PhantomData,
-                shading,
-                cull: self.cull,
-                tile,
-                paint,
-                patch,
-                inward,
-                ink,
-                statistics,
-            },
-        );
-    }
-}
-
-/// The pieces of one patch on their way into a tile.
-struct Filling<'s, 'b, 't, S, P: Paint> {
-    kind: PhantomData<S>,
-    shading: Shading<'s>,
-    cull: Cull,
-    tile: &'t mut Tile<'b, P::Pixel>,
-    paint: &'s P,
-    patch: usize,
-    inward: bool,
-    ink: Ink,
-    statistics: &'t mut Statistics,
-}
-
-impl<S: Surface, P: Paint> Filling<'_, '_, '_, S, P> {
-    /// Draws one lattice of a piece.
-    fn lattice(&mut self, piece: SurfaceNet<'_>, plan: &Plan<'_>, halvings: u32) {
-        let (area, colour, depth) = self.tile.parts();
-        let (form, window) = (&plan.form, self.shading.window.halved(halvings));
-        // A tensor-product lattice that is turned has its tangents exchanged.
-        let side = match (self.cull, self.inward != (form.kind == Kind::Tensor && form.turn() == 1)) {
-            (Cull::None, _) => Side::Viewer,
-            (Cull::Back, false) => Side::Along,
-            (Cull::Back, true) => Side::Against,
-        };
-        let mut shader = Shader {
-            shading: self.shading,
-            canvas: Canvas { paint: self.paint, patch: self.patch, colour },
-            side,
-            tangents: Tangents::new(piece, form),
-        };
-        plan.draw::<S>(&mut Pen {
+        let (Some(draw), Some(surface)) = (draw, self.patches.get(patch)) else { return };
+        let (area, colour, depth) = tile.parts();
+        draw(&mut Drawing {
+            net: surface.surface(),
+            shading: Shading { light: &self.light, style: self.style, window: self.window },
+            cull: self.cull,
+            inward: self.topology.get(patch).is_some_and(PatchTopology::is_inward),
+            ink,
             area,
             depth,
-            window,
-            fraction: Fraction::of(plan.budget.scale, window.bits),
-            ink: self.ink,
-            side,
-            form,
-            rows: Rows::in_band(form, (area.y, area.y.saturating_add_unsigned(area.height))),
-            points: &mut self.statistics.points,
-            brush: &mut shader,
+            stain: &mut Canvas { paint, patch, colour },
+            statistics,
         });
-    }
-}
-
-impl<S: Surface, P: Paint> Pieces for Filling<'_, '_, '_, S, P> {
-    fn wants(&mut self, piece: SurfaceNet<'_>) -> bool {
-        meets(piece, &self.tile.area()) && (self.cull == Cull::None || !faces_away(&piece, self.inward))
-    }
-
-    fn piece(&mut self, piece: SurfaceNet<'_>, sampling: Sampling, room: &mut [Point3]) {
-        self.statistics.pieces += 1;
-        // Checked in `new`, so it cannot fail here.
-        let _ = each_lattice::<S>(piece, sampling, room, &mut |plan, halvings| self.lattice(piece, plan, halvings));
-    }
-
-    fn split(&mut self) {
-        self.statistics.splits += 1;
     }
 }
 
@@ -404,19 +345,6 @@ pub(crate) fn fits_every_style<S: Surface>(patches: &[S]) -> Result<(), RenderEr
         let net = patch.surface();
         let fits = check_pieces::<S>(net, true).and_then(|()| any_family(net));
         fits.map_err(|error| RenderError::Patch { index, error })?;
-    }
-    Ok(())
-}
-
-/// Every lattice that the style will need fits the engine.
-fn check<S: Surface>(net: SurfaceNet<'_>, style: Style) -> Result<(), LatticeError> {
-    if style.lines() != Some(false) {
-        check_pieces::<S>(net, style.needs_normals())?;
-    }
-    if let Style::Wire(lines) = style {
-        for turn in 0..families(net) {
-            family(net, lines, turn)?;
-        }
     }
     Ok(())
 }

@@ -1,34 +1,24 @@
 //! From two rows of vertices to convex facets: clipping, culling, splitting, levels.
 
-use super::super::light::{Light, normal_of, short};
-use super::super::pen::tangents_inside;
+use super::super::light::Light;
 use super::super::style::Style;
-use super::vertices::{Lit, Row, RowSink, Rows, Tangents, Vertex};
+use super::vertices::{Lit, Normals, Row, RowSink, Rows, Vertex};
 use super::{FRACTION_BITS, Output, Quad};
 use crate::forward::Form;
-use crate::patch::SurfaceNet;
 
 /// Where levels come from.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::render) struct Lighting<'a> {
     pub(super) light: &'a Light,
     pub(super) style: Style,
-    pub(super) net: SurfaceNet<'a>,
     pub(super) form: &'a Form<'a>,
-    /// Whether the walk's r is the patch's s, and the other way round.
-    pub(super) is_turned: bool,
 }
 
 impl Lighting<'_> {
     /// The level of the side that the light reaches, and which one it is.
     #[inline(never)]
-    fn shade(&self, vertex: &mut Vertex, tangents: [[i16; 3]; 2], i: u32, j: u32) {
-        let inside = || {
-            let (i, j) = if self.is_turned { (j, i) } else { (i, j) };
-            let [r, s] = tangents_inside(self.net, self.form, i, j)?.map(short);
-            normal_of(if self.is_turned { [s, r] } else { [r, s] })
-        };
-        let normal = normal_of(tangents).or_else(inside).unwrap_or([0, 0, -1]);
+    fn shade(&self, vertex: &mut Vertex, normal: Option<[i32; 3]>) {
+        let normal = normal.unwrap_or([0, 0, -1]);
         let (level, along) = self.light.level_of_lit_side(normal);
         vertex.level = match self.style {
             Style::Glossy(gloss) => self.light.glossy(if along { normal } else { normal.map(|n| -n) }, gloss),
@@ -114,7 +104,7 @@ const WARP: (i32, i32) = (48, 1024);
 struct Cell<'r> {
     /// (i, j−1), (i+1, j−1), (i+1, j), (i, j); of a triangle the third is not used.
     corners: [&'r mut Vertex; 4],
-    tangents: &'r dyn Tangents,
+    normals: &'r dyn Normals,
     /// i and j.
     at: [u32; 2],
 }
@@ -122,10 +112,10 @@ struct Cell<'r> {
 impl Cells<'_> {
     /// The level of a corner on the side that is seen; `dark` is how it is lit where that is the other side.
     #[inline(always)]
-    fn level(&self, vertex: &mut Vertex, corner: usize, dark: Lit, tangents: &dyn Tangents, at: [u32; 2]) -> u8 {
+    fn level(&self, vertex: &mut Vertex, corner: usize, dark: Lit, normals: &dyn Normals, at: [u32; 2]) -> u8 {
         if vertex.lit == Lit::Unknown {
             let (i, j) = (at[0] + u32::from(corner == 1 || corner == 2), at[1] - u32::from(corner < 2));
-            self.lighting.shade(vertex, tangents.tangents(i, j), i, j);
+            self.lighting.shade(vertex, normals.normal(i, j));
         }
         if vertex.lit == dark { self.lighting.light.ambient() } else { vertex.level }
     }
@@ -133,7 +123,7 @@ impl Cells<'_> {
     /// Draws a cell that may be seen, given twice the areas of its triangles abc and acd.
     #[inline(always)]
     fn cell(&mut self, cell: Cell<'_>, [abc, acd]: [i32; 2], is_triangle: bool) {
-        let Cell { corners: [a, b, c, d], tangents, at } = cell;
+        let Cell { corners: [a, b, c, d], normals, at } = cell;
         let abd = cross([b.x - a.x, b.y - a.y], [d.x - a.x, d.y - a.y]);
         let bcd = abc.wrapping_add(acd).wrapping_sub(abd);
         let [x_from, x_to, y_from, y_to] = self.window;
@@ -145,7 +135,7 @@ impl Cells<'_> {
         }
         let is_convex = (abc | acd | abd | bcd) >= 0 || (abc <= 0 && acd <= 0 && abd <= 0 && bcd <= 0);
         if !is_convex || is_triangle {
-            let mut cell = Cell { corners: [a, b, c, d], tangents, at };
+            let mut cell = Cell { corners: [a, b, c, d], normals, at };
             return if is_triangle {
                 self.triangle(&mut cell, abc < 0, [0, 1, 3]);
             } else {
@@ -155,10 +145,10 @@ impl Cells<'_> {
         let along = abc < 0 || acd < 0;
         let dark = if along { Lit::Against } else { Lit::Along };
         let level = [
-            self.level(a, 0, dark, tangents, at),
-            self.level(b, 1, dark, tangents, at),
-            self.level(c, 2, dark, tangents, at),
-            self.level(d, 3, dark, tangents, at),
+            self.level(a, 0, dark, normals, at),
+            self.level(b, 1, dark, normals, at),
+            self.level(c, 2, dark, normals, at),
+            self.level(d, 3, dark, normals, at),
         ];
         // Clockwise on the screen: the other way round where S_r × S_s looks at the viewer.
         let (b, d, second, fourth) = if along { (d, b, level[3], level[1]) } else { (b, d, level[1], level[3]) };
@@ -211,7 +201,7 @@ impl Cells<'_> {
         let mut quad = Quad { x: [0; 4], y: [0; 4], depth: [0; 4], level: [0; 4], patch: self.patch };
         for (k, corner) in order.into_iter().enumerate() {
             let vertex = &mut *cell.corners[corner & 3];
-            quad.level[k] = self.level(vertex, corner, dark, cell.tangents, cell.at);
+            quad.level[k] = self.level(vertex, corner, dark, cell.normals, cell.at);
             (quad.x[k], quad.y[k], quad.depth[k]) = (vertex.x, vertex.y, vertex.depth);
         }
         self.facets += 1;
@@ -220,7 +210,7 @@ impl Cells<'_> {
 }
 
 impl RowSink for Cells<'_> {
-    fn row(&mut self, rows: &mut Rows, tangents: &dyn Tangents, j: u32, count: usize) {
+    fn row(&mut self, rows: &mut Rows, normals: &dyn Normals, j: u32, count: usize) {
         if j == 0 {
             return;
         }
@@ -234,7 +224,7 @@ impl RowSink for Cells<'_> {
             let ac = minus(c, a);
             let areas = [cross(minus(b, a), ac), cross(ac, minus(d, a))];
             if !self.side.hides(areas) {
-                self.seen(above, below, (tangents, j, k), areas);
+                self.seen(above, below, (normals, j, k), areas);
             }
             (a, d) = (b, c);
         }
@@ -242,7 +232,7 @@ impl RowSink for Cells<'_> {
         let form = self.lighting.form;
         let last = self.first + count as u32 - 1;
         if form.last_in_row(j) == last && form.last_in_row(j - 1) > last && count <= super::SEGMENTS {
-            self.last(above, below, (tangents, j, count - 1));
+            self.last(above, below, (normals, j, count - 1));
         }
     }
 }
@@ -250,29 +240,23 @@ impl RowSink for Cells<'_> {
 impl Cells<'_> {
     /// The cell after column `k` of the strip.
     #[inline(never)]
-    fn seen(
-        &mut self,
-        above: &mut Row,
-        below: &mut Row,
-        (tangents, j, k): (&dyn Tangents, u32, usize),
-        areas: [i32; 2],
-    ) {
+    fn seen(&mut self, above: &mut Row, below: &mut Row, (normals, j, k): (&dyn Normals, u32, usize), areas: [i32; 2]) {
         let at = [self.first + k as u32, j];
         if let (Some([a, b]), Some([d, c])) = (above.get_mut(k..k + 2), below.get_mut(k..k + 2)) {
-            self.cell(Cell { corners: [a, b, c, d], tangents, at }, areas, false);
+            self.cell(Cell { corners: [a, b, c, d], normals, at }, areas, false);
         }
     }
 
     /// The triangle at the end of a row of a triangular patch, after column `k` of the strip.
     #[cold]
     #[inline(never)]
-    fn last(&mut self, above: &mut Row, below: &mut Row, (tangents, j, k): (&dyn Tangents, u32, usize)) {
+    fn last(&mut self, above: &mut Row, below: &mut Row, (normals, j, k): (&dyn Normals, u32, usize)) {
         if let (Some([a, b]), Some(d)) = (above.get_mut(k..k + 2), below.get_mut(k)) {
             let mut c = *d;
             let ac = minus(c.place(), a.place());
             let areas = [cross(minus(b.place(), a.place()), ac), 0];
             if !self.side.hides(areas) {
-                self.cell(Cell { corners: [a, b, &mut c, d], tangents, at: [self.first + k as u32, j] }, areas, true);
+                self.cell(Cell { corners: [a, b, &mut c, d], normals, at: [self.first + k as u32, j] }, areas, true);
             }
         }
     }

@@ -9,8 +9,8 @@
 //! and where a span ends depends on the two vertices of the side alone: next to a side that two facets share, each
 //! centre is in exactly one.
 //!
-//! Most patches are bicubic: `bicubic` walks them in 32 bits, with the edges exact and the inside within 1/128 pixel. All
-//! others take the point engine.
+//! Most patches are bicubic: `bicubic` walks those of degree 3 or less in fixed point, with the edges exact and the inside
+//! within 1/128 pixel. All others take the point engine.
 //!
 //! **Bands do not show.** Facets and their order depend on the scene alone; a span, a depth and a level are linear
 //! functions of the pixel in integers modulo 2^32.
@@ -31,13 +31,13 @@ pub(super) use counts::Segments;
 pub(super) use list::{Facets, Recorder};
 pub(super) use quad::{Filler, Quad};
 
-use super::cull::faces_away;
+use super::cull::{Facing, facing};
 use super::depth::DepthWindow;
 use super::plan::Plan;
 use super::style::Style;
 use super::{Light, Statistics};
 use crate::forward::{Form, Fraction, LatticeError};
-use crate::patch::SurfaceNet;
+use crate::patch::{Surface, SurfaceNet};
 use bicubic::Bicubic;
 use cells::{Cells, Lighting, Side};
 use vertices::{Collector, Kept, Rows, SEGMENTS};
@@ -54,25 +54,9 @@ pub(super) trait Output {
     fn window(&self) -> [i32; 4];
 }
 
-/// Who walks the grid of a patch.
-#[allow(clippy::large_enum_variant, reason = "no heap")]
-enum Walk<'a> {
-    Bicubic(Bicubic<'a>),
-    General(Plan<'a>),
-}
-
-impl<'a> Walk<'a> {
-    fn of(net: SurfaceNet<'a>, counts: (u32, u32)) -> Result<Self, LatticeError> {
-        match Bicubic::of(net, counts) {
-            Some(grid) => Ok(Self::Bicubic(grid)),
-            None => Ok(Self::General(Plan::of(Form::surface(net, counts), true)?)),
-        }
-    }
-}
-
 /// Checks that the grid of a patch at these counts fits the engine.
-pub(super) fn check(net: SurfaceNet<'_>, counts: (u32, u32)) -> Result<(), LatticeError> {
-    Walk::of(net, counts).map(|_| ())
+pub(super) fn check<S: Surface>(net: SurfaceNet<'_>, counts: (u32, u32)) -> Result<(), LatticeError> {
+    if Bicubic::suits::<S>(&net) { Ok(()) } else { Plan::of(Form::surface(net, counts), true).map(drop) }
 }
 
 /// One patch of a scene.
@@ -90,21 +74,43 @@ pub(super) struct Patch<'a> {
 ///
 /// Stack: 1.2 KB, of them 0.8 for two rows of 33 vertices, and 0.9 KB for the walk over a bicubic patch, or 1.1 KB and
 /// what the point engine takes.
-pub(super) fn facets(
+pub(super) fn facets<S: Surface>(
     patch: &Patch<'_>,
-    (light, style, window): (&Light, Style, DepthWindow),
+    looks: (&Light, Style, DepthWindow),
     output: &mut dyn Output,
 ) -> Statistics {
-    if patch.inward.is_some_and(|inward| faces_away(&patch.net, inward)) {
+    if patch.inward.is_some_and(|inward| facing(&patch.net, inward) == Facing::Away) {
         return Statistics::default();
     }
+    if Bicubic::suits::<S>(&patch.net) {
+        let grid = Bicubic::new(patch.net, patch.counts);
+        let form = grid.form();
+        return strips(patch, looks, (&form, grid.is_turned(), grid.columns()), output, &mut |columns, rows, cells| {
+            let (_, style, window) = looks;
+            let level = |depth| level_of(style, window, depth);
+            let level: Option<&dyn Fn(u16) -> u8> = if style.needs_normals() { None } else { Some(&level) };
+            grid.walk(columns, rows, cells, (window, level));
+        });
+    }
     // Checked with the scene, so it cannot fail here.
-    let Ok(walk) = Walk::of(patch.net, patch.counts) else { return Statistics::default() };
-    let (form, is_turned) = match &walk {
-        Walk::Bicubic(grid) => (grid.form(), grid.is_turned()),
-        Walk::General(plan) => (plan.form, false),
-    };
-    let lighting = Lighting { light, style, net: patch.net, form: &form, is_turned };
+    let Ok(plan) = Plan::of(Form::surface(patch.net, patch.counts), true) else { return Statistics::default() };
+    strips(patch, looks, (&plan.form, false, plan.form.steps.0), output, &mut |columns, rows, cells| {
+        general(&plan, patch.net, columns, (rows, cells), looks);
+    })
+}
+
+/// What walks a strip: from its first to its last column.
+type Walk<'w> = &'w mut dyn FnMut((u32, u32), &mut Rows, &mut Cells<'_>);
+
+/// Makes the facets of a patch, a strip of columns at a time.
+fn strips(
+    patch: &Patch<'_>,
+    (light, style, _): (&Light, Style, DepthWindow),
+    (form, is_turned, last): (&Form<'_>, bool, u32),
+    output: &mut dyn Output,
+    walk: Walk<'_>,
+) -> Statistics {
+    let lighting = Lighting { light, style, form };
     // S_s × S_r points the other way.
     let (side, window_of) = (Side::of(patch.inward.map(|inward| inward != is_turned)), output.window());
     let bounds = patch.net.bounds();
@@ -112,13 +118,10 @@ pub(super) fn facets(
     let mut cells =
         Cells { patch: patch.index, lighting, side, output, window: window_of, is_wide, first: 0, facets: 0 };
     let mut rows = Rows::new();
-    match walk {
-        Walk::Bicubic(grid) => {
-            let level = |depth| level_of(style, window, depth);
-            let level: Option<&dyn Fn(u16) -> u8> = if style.needs_normals() { None } else { Some(&level) };
-            grid.walk(&mut rows, &mut cells, window, level);
-        }
-        Walk::General(plan) => general(&plan, &mut rows, &mut cells, (style, window)),
+    while cells.first < last {
+        let columns = (cells.first, (cells.first + SEGMENTS as u32).min(last));
+        walk(columns, &mut rows, &mut cells);
+        cells.first = columns.1;
     }
     Statistics { vertices: form.point_count(), facets: cells.facets.into(), ..Statistics::default() }
 }
@@ -131,17 +134,17 @@ fn level_of(style: Style, window: DepthWindow, depth: u16) -> u8 {
     }
 }
 
-/// Walks a grid by the point engine, a strip of columns at a time.
+/// Walks a strip by the point engine.
 #[inline(never)]
-fn general(plan: &Plan<'_>, rows: &mut Rows, cells: &mut Cells<'_>, (style, window): (Style, DepthWindow)) {
+fn general(
+    plan: &Plan<'_>,
+    net: SurfaceNet<'_>,
+    columns: (u32, u32),
+    (rows, sink): (&mut Rows, &mut Cells<'_>),
+    (_, style, window): (&Light, Style, DepthWindow),
+) {
     let fraction = Fraction::of(plan.budget.scale, FRACTION_BITS);
     let form = &plan.form;
-    let mut first = 0;
-    while first < form.steps.0 {
-        let columns = (first, (first + SEGMENTS as u32).min(form.steps.0));
-        cells.first = first;
-        let (rows, sink, kept) = (&mut *rows, &mut *cells, &mut Kept::new(first));
-        plan.walk(Collector { rows, kept, sink, style, window, fraction, form, columns });
-        first = columns.1;
-    }
+    let kept = &mut Kept::new(columns.0, net, form);
+    plan.walk(Collector { rows, kept, sink, style, window, fraction, form, columns });
 }

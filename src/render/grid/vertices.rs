@@ -1,10 +1,12 @@
 //! The vertices of a patch's grid, two rows at a time.
 
 use super::super::depth::DepthWindow;
-use super::super::light::short;
+use super::super::light::{normal_of, short};
+use super::super::pen::tangents_inside;
 use super::super::style::Style;
 use super::level_of;
 use crate::forward::{Form, Fraction, Site, Visit};
+use crate::patch::SurfaceNet;
 
 /// Segments of a row that are walked at once. A longer row is cut into strips, each a walk of its own.
 pub(super) const SEGMENTS: usize = 32;
@@ -68,42 +70,46 @@ pub(super) fn with_room(depth: u16) -> u16 {
     ROOM + depth - (depth >> 5)
 }
 
-/// The tangents of two rows of vertices.
-pub(super) trait Tangents {
-    /// Directions of S_r and S_s at column `i` of row `j`, in 14 bits each.
-    fn tangents(&self, i: u32, j: u32) -> [[i16; 3]; 2];
+/// The normals of two rows of vertices.
+pub(super) trait Normals {
+    /// The normal S_r × S_s at column `i` of row `j`, of components of at most 2^15; `None` where it is not known.
+    fn normal(&self, i: u32, j: u32) -> Option<[i32; 3]>;
 }
 
 /// What is done with a row of vertices and the one before it.
 pub(super) trait RowSink {
     /// Row `j` is complete, with `count` vertices of the strip.
-    fn row(&mut self, rows: &mut Rows, tangents: &dyn Tangents, j: u32, count: usize);
+    fn row(&mut self, rows: &mut Rows, normals: &dyn Normals, j: u32, count: usize);
 }
 
 /// Tangents of a strip's vertices in two rows, kept as they come: row j stands at j mod 2.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Kept {
+pub(super) struct Kept<'a> {
     rows: [[[[i16; 3]; 2]; SEGMENTS + 1]; 2],
     first: u32,
+    net: SurfaceNet<'a>,
+    form: &'a Form<'a>,
 }
 
-impl Kept {
+impl<'a> Kept<'a> {
     /// For the strip from column `first` on.
-    pub(super) fn new(first: u32) -> Self {
-        Self { rows: [[[[0; 3]; 2]; SEGMENTS + 1]; 2], first }
+    pub(super) fn new(first: u32, net: SurfaceNet<'a>, form: &'a Form<'a>) -> Self {
+        Self { rows: [[[[0; 3]; 2]; SEGMENTS + 1]; 2], first, net, form }
     }
 }
 
-impl Tangents for Kept {
-    fn tangents(&self, i: u32, j: u32) -> [[i16; 3]; 2] {
-        self.rows[(j & 1) as usize].get(i.wrapping_sub(self.first) as usize).copied().unwrap_or_default()
+impl Normals for Kept<'_> {
+    fn normal(&self, i: u32, j: u32) -> Option<[i32; 3]> {
+        let kept = self.rows[(j & 1) as usize].get(i.wrapping_sub(self.first) as usize);
+        let inside = || normal_of(tangents_inside(self.net, self.form, i, j)?.map(short));
+        normal_of(*kept?).or_else(inside)
     }
 }
 
 /// Collects rows of vertices on a walk; with tangents in every style, so that one copy of the walks serves all.
 pub(super) struct Collector<'v> {
     pub(super) rows: &'v mut Rows,
-    pub(super) kept: &'v mut Kept,
+    pub(super) kept: &'v mut Kept<'v>,
     pub(super) sink: &'v mut dyn RowSink,
     pub(super) style: Style,
     pub(super) window: DepthWindow,

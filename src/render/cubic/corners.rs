@@ -1,0 +1,129 @@
+//! Corners of a grid: ⌊256·S⌋, exact on edges, within 1/128 pixel inside.
+//!
+//! On an edge, and at the ends of a row, values come from [`at`](super::at), less than 16 units off, and [`exact`](super::exact)
+//! decides where that is not enough: patches on both sides of an edge get equal bits. Inside, rows are walked by differences.
+
+use super::super::light::Side;
+use super::run::Line;
+use super::tangents::{RowTangents, normal_of};
+use super::{Piece, at, scaled};
+use crate::patch::SurfaceNet;
+
+/// Fraction bits of corners.
+const CORNER: u32 = 8;
+
+/// What values may be off.
+const DOUBT: i32 = 16;
+
+/// The grid of a piece that [`suits`](super::suits).
+#[derive(Clone, Copy, Debug)]
+pub(in crate::render) struct Corners<'n> {
+    piece: Piece<'n>,
+    /// The whole corner units of the origin, and the rest in 2^-F.
+    base: [i32; 3],
+    fraction: [i32; 3],
+    /// F less [`CORNER`].
+    shift: u32,
+}
+
+/// A row of corners.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::render) struct CornerRow {
+    j: u32,
+    s: i32,
+    cubics: [[i32; 4]; 3],
+    /// The values at both ends.
+    ends: [[i32; 2]; 3],
+    is_edge: bool,
+}
+
+impl<'n> Corners<'n> {
+    /// The grid of a net with so many segments; rows run along s if `is_turned`.
+    pub(in crate::render) fn new(net: SurfaceNet<'n>, steps: (u32, u32), is_turned: bool, steepest: u32) -> Self {
+        let piece = Piece::new(net, steps, u8::from(is_turned), steepest);
+        let start = piece.origin.map(|c| c - (1 << 15));
+        let (up, down) = (piece.bits.saturating_sub(16), 16_u32.saturating_sub(piece.bits));
+        Self {
+            piece,
+            base: start.map(|c| c >> CORNER),
+            fraction: start.map(|c| (c & 255) >> down << up),
+            shift: piece.bits.saturating_sub(CORNER).clamp(1, 31),
+        }
+    }
+
+    /// Row `j`.
+    #[inline(never)]
+    pub(in crate::render) fn row(&self, j: u32) -> CornerRow {
+        let s = self.piece.across.half(2 * j);
+        let (mut cubics, mut ends) = ([[0; 4]; 3], [[0; 2]; 3]);
+        for axis in 0..3 {
+            let control = self.piece.control(axis, s);
+            ends[axis] = [control[0], control[self.piece.degrees[0] & 3]];
+            cubics[axis] = self.piece.row(control);
+        }
+        CornerRow { j, s, cubics, ends, is_edge: j == 0 || j == self.piece.across.steps }
+    }
+
+    /// Calls `set` with a coordinate of the corners from number `first` on.
+    #[inline(always)]
+    pub(in crate::render) fn each<T>(
+        &self,
+        row: &CornerRow,
+        axis: usize,
+        first: u32,
+        out: &mut [T],
+        set: impl Fn(&mut T, i32),
+    ) {
+        let (base, fraction) = (self.base[axis], self.fraction[axis]);
+        let along = &self.piece.along;
+        if row.is_edge {
+            let cubic = scaled(row.cubics[axis]);
+            for (i, out) in (first..).zip(out.iter_mut()) {
+                set(out, self.exact(axis, [i, row.j], at(&cubic, along.half(2 * i))));
+            }
+        } else {
+            let mut line: Line = self.piece.line(&row.cubics[axis], along.half(2 * first), fraction);
+            for out in out.iter_mut() {
+                set(out, (line.value >> self.shift).wrapping_add(base));
+                line.step();
+                core::hint::black_box(());
+            }
+        }
+        let last = (first as usize).wrapping_add(out.len()).wrapping_sub(1) as u32;
+        if let (0, Some(out)) = (first, out.first_mut()) {
+            set(out, self.exact(axis, [0, row.j], row.ends[axis][0]));
+        }
+        if let (true, Some(out)) = (last == along.steps, out.last_mut()) {
+            set(out, self.exact(axis, [last, row.j], row.ends[axis][1]));
+        }
+    }
+
+    /// The exact corner for a value that is at most [`DOUBT`] off.
+    #[inline(always)]
+    fn exact(&self, axis: usize, at: [u32; 2], value: i32) -> i32 {
+        let value = value.wrapping_add(self.fraction[axis]);
+        let near = (value >> self.shift).wrapping_add(self.base[axis]);
+        let rest = value.wrapping_add(DOUBT) & ((1 << self.shift) - 1);
+        if rest < 2 * DOUBT || self.shift < 6 { self.settle(axis, at, near) } else { near }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn settle(&self, axis: usize, at: [u32; 2], near: i32) -> i32 {
+        let unit = 16 - CORNER;
+        self.piece.exact_floor(axis, at, false, (near, i64::from(near) << unit, unit))
+    }
+
+    /// Finds the tangents of a row.
+    pub(in crate::render) fn tangents(&self, row: &CornerRow, out: &mut RowTangents) {
+        self.piece.tangents(&row.cubics, row.s, out);
+    }
+
+    /// The normal S_r × S_s of the walk at corner (i, j), from the tangents of its row; where they span no plane, that 1/64
+    /// further inside.
+    pub(in crate::render) fn normal(&self, tangents: &RowTangents, i: u32, j: u32) -> Option<[i32; 3]> {
+        let t = self.piece.along.half(2 * i);
+        let inside = || self.piece.inside(self.piece.across.half(2 * j), t, Side::Along);
+        normal_of(Side::Along, tangents.at(t)).or_else(inside)
+    }
+}
