@@ -277,12 +277,11 @@ impl<'n> Piece<'n> {
         };
         let third = self.powers.times(2, b3.wrapping_mul(6));
         let second = self.powers.times(1, bend.wrapping_shl(1));
-        // 2^32/6.
-        const SIXTH: i32 = 715_827_883;
         let first = self.powers.times(0, slope.wrapping_shl(MORE));
         Line {
             value: value.wrapping_add(fraction),
-            first: first.wrapping_add(second >> 1).wrapping_add(high(third, SIXTH)),
+            // Modulo 2^32, where the sum fits though its parts may not.
+            first: first.wrapping_add(self.powers.times(1, bend)).wrapping_add(self.powers.times(2, b3)),
             second: second.wrapping_add(third),
             third,
         }

@@ -99,3 +99,14 @@ fn both_ends_of_the_range() {
         }
     }
 }
+
+/// Regression: with one step along a row, the third difference of such a row does not fit, though the first one does.
+#[test]
+fn one_step_is_right() {
+    let mut bits = [(0, 0); 16];
+    bits[7] = (0, 1 << 15);
+    let points = net_of(3, 1, &bits, 0);
+    let net = SurfaceNet::Tensor(TensorNet::new((3, 1), &points).unwrap());
+    let area = Area { x: -9, y: -9, width: 20, height: 20 };
+    assert_eq!(drawn(net, (1, 1), 0, false, area), exact(net, (1, 1), false, area));
+}
