@@ -7,8 +7,8 @@
 mod draw;
 
 use clap::Parser;
-use embedded_graphics::geometry::Point as Pixel;
-use embedded_graphics::image::ImageDrawable;
+use embedded_graphics::Pixel;
+use embedded_graphics::geometry::Point as Place;
 use embedded_graphics::pixelcolor::Rgb888;
 use embedded_graphics::prelude::*;
 use embedded_graphics::primitives::{Circle, Line, PrimitiveStyle};
@@ -91,13 +91,13 @@ fn table(name: &str, found: &Intersection<'_>) {
 }
 
 /// The place of a point on the screen, in binary64.
-fn project(map: &Affine, p: &CurvePoint) -> Pixel {
+fn project(map: &Affine, p: &CurvePoint) -> Place {
     let x = p.position.to_array().map(|c| c.to_num::<f64>());
     let row = |r: usize| {
         let row = map.rows[r].map(|c| c.to_num::<f64>());
         row[0] * x[0] + row[1] * x[1] + row[2] * x[2] + row[3]
     };
-    Pixel::new(row(0).round() as i32, row(1).round() as i32)
+    Place::new(row(0).round() as i32, row(1).round() as i32)
 }
 
 fn picture(
@@ -152,9 +152,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         let found = intersect(a, b, &options, buffers)?;
         table(name, &found);
         let part = picture(patches, &found, size)?;
-        let image = part.to_rgb_output_image(&OutputSettings::default());
-        let corner = Pixel::new((k as u32 % 2 * size) as i32, (k as u32 / 2 * size) as i32);
-        image.as_image_raw().draw(&mut sheet.translated(corner))?;
+        let corner = Place::new((k as u32 % 2 * size) as i32, (k as u32 / 2 * size) as i32);
+        let pixels = part.bounding_box().points().map(|at| Pixel(at + corner, part.get_pixel(at)));
+        sheet.draw_iter(pixels)?;
     }
     sheet.to_rgb_output_image(&OutputSettings::default()).save_png(&arguments.output)?;
     println!("{}: {} x {}", arguments.output.display(), 2 * size, 2 * size);
