@@ -49,8 +49,11 @@ fn sheet(reach: i16, z: [[i16; 4]; 4]) -> Result<BicubicPatch, Box<dyn Error>> {
     Ok(BicubicPatch::from_ints(points)?)
 }
 
-/// The pairs with their names.
-fn pairs() -> Result<[(&'static str, [BicubicPatch; 2]); 4], Box<dyn Error>> {
+/// Two patches with a name.
+type Named = (&'static str, [BicubicPatch; 2]);
+
+/// What is drawn.
+fn pairs() -> Result<[Named; 4], Box<dyn Error>> {
     let waves = sheet(192, [[90, -80, 70, -60], [-70, 160, -150, 80], [60, -150, 170, -90], [-80, 70, -60, 90]])?;
     let dome = sheet(192, [[-60, -20, -20, -60], [-20, 130, 130, -20], [-20, 130, 130, -20], [-60, -20, -20, -60]])?;
     let slope = sheet(210, [[-14, 6, 26, 46], [-14, 6, 26, 46], [-14, 6, 26, 46], [-14, 6, 26, 46]])?;
