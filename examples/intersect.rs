@@ -9,7 +9,7 @@ mod command;
 mod draw;
 
 use clap::Parser;
-use embedded_graphics::geometry::Point as Pixel;
+use embedded_graphics::geometry::Point as Place;
 use embedded_graphics::pixelcolor::Rgb888;
 use embedded_graphics::prelude::*;
 use embedded_graphics::primitives::{Circle, Line, PrimitiveStyle, Rectangle};
@@ -51,10 +51,11 @@ fn sheet(reach: i16, z: [[i16; 4]; 4]) -> Result<BicubicPatch, Box<dyn Error>> {
     Ok(BicubicPatch::from_ints(points)?)
 }
 
-/// Two patches and what they show.
-type Pair = (&'static str, [BicubicPatch; 2]);
+/// Two patches with a name.
+type Named = (&'static str, [BicubicPatch; 2]);
 
-fn pairs() -> Result<[Pair; 4], Box<dyn Error>> {
+/// What is drawn.
+fn pairs() -> Result<[Named; 4], Box<dyn Error>> {
     let waves = sheet(192, [[90, -80, 70, -60], [-70, 160, -150, 80], [60, -150, 170, -90], [-80, 70, -60, 90]])?;
     let dome = sheet(192, [[-60, -20, -20, -60], [-20, 130, 130, -20], [-20, 130, 130, -20], [-60, -20, -20, -60]])?;
     let slope = sheet(210, [[-14, 6, 26, 46], [-14, 6, 26, 46], [-14, 6, 26, 46], [-14, 6, 26, 46]])?;
@@ -95,13 +96,13 @@ fn table(name: &str, found: &Intersection<'_>) {
 }
 
 /// The place of a point on the screen, in binary64.
-fn project(map: &Affine, p: &CurvePoint) -> Pixel {
+fn project(map: &Affine, p: &CurvePoint) -> Place {
     let x = p.position.to_array().map(|c| c.to_num::<f64>());
     let row = |r: usize| {
         let row = map.rows[r].map(|c| c.to_num::<f64>());
         row[0] * x[0] + row[1] * x[1] + row[2] * x[2] + row[3]
     };
-    Pixel::new(row(0).round() as i32, row(1).round() as i32)
+    Place::new(row(0).round() as i32, row(1).round() as i32)
 }
 
 fn picture(
@@ -159,7 +160,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         let found = intersect(a, b, &options, buffers)?;
         table(name, &found);
         let part = picture(patches, &found, size)?;
-        let corner = Pixel::new((k as u32 % 2 * size) as i32, (k as u32 / 2 * size) as i32);
+        let corner = Place::new((k as u32 % 2 * size) as i32, (k as u32 / 2 * size) as i32);
         let area = Rectangle::new(corner, part.size());
         sheet.fill_contiguous(&area, part.bounding_box().points().map(|at| part.get_pixel(at)))?;
     }

@@ -24,7 +24,8 @@ impl Patch {
         let count = if triangle { (m + 1) * (m + 2) / 2 } else { (m + 1) * (h + 1) };
         // Whole numbers of one byte meet in special ways; any bits are the rest.
         let whole: bool = u.arbitrary()?;
-        let mut c = || -> Result<i32> { Ok(if whole { i32::from(u.arbitrary::<i8>()?) << 16 } else { u.arbitrary()? }) };
+        let mut c =
+            || -> Result<i32> { Ok(if whole { i32::from(u.arbitrary::<i8>()?) << 16 } else { u.arbitrary()? }) };
         let points = (0..count).map(|_| Ok(Point3::from_bits(c()?, c()?, c()?))).collect::<Result<_>>()?;
         let weights = if u.ratio(1, 4)? {
             let weight = |_| Ok(I16F16::from_bits(u.int_in_range(1..=1 << 18)?));

@@ -317,7 +317,7 @@ fn is_ordered(a: &SurfaceNet<'_>, b: &SurfaceNet<'_>) -> bool {
 ///
 /// let (mut vertices, mut boxes) = (vec![[0; 3]; room.vertices], vec![[[0; 3]; 2]; room.boxes]);
 /// let (mut records, mut links) = ([0; 400], [0; 400]);
-/// let (mut points, mut curves, mut branches) = ([CurvePoint::BLANK; 200], [Curve::BLANK; 4], [Branch::BLANK; 1]);
+/// let (mut points, mut curves, mut branches) = ([CurvePoint::BLANK; 500], [Curve::BLANK; 4], [Branch::BLANK; 1]);
 /// let shore = intersect(hill.surface(), water.surface(), &options, Buffers {
 ///     vertices: &mut vertices,
 ///     boxes: &mut boxes,

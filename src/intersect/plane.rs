@@ -18,7 +18,7 @@ use crate::patch::{SurfaceNet, TensorNet};
 /// # Examples
 /// ```
 /// use embedded_surfaces::geometry::Axis;
-/// use embedded_surfaces::intersect::{Branch, Buffers, Curve, CurvePoint, End, Options, Room, Side, section};
+/// use embedded_surfaces::intersect::{Branch, Buffers, Curve, CurvePoint, End, I20F44, Options, Side, section};
 /// use embedded_surfaces::num::I16F16;
 /// use embedded_surfaces::patch::{BilinearPatch, Surface};
 ///
@@ -39,7 +39,8 @@ use crate::patch::{SurfaceNet, TensorNet};
 /// let contour = section(roof.surface(), Axis::Z, height, &Options::DEFAULT.with_depth(3), buffers)?;
 /// let line = contour.curves()[0];
 /// assert_eq!(line.ends.map(|end| matches!(end, End::Edge { side: Side::A, .. })), [true; 2]);
-/// assert!(contour.points(&line).iter().all(|p| p.position.x == 20 && p.position.z == 10));
+/// let off = |p: &CurvePoint| (p.position.x - I20F44::from_num(20)).abs() + (p.position.z - I20F44::from_num(10)).abs();
+/// assert!(contour.points(&line).iter().all(|p| off(p) < I20F44::from_bits(1 << 14))); // 10^-9
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn section<'b>(
