@@ -33,10 +33,11 @@
 //!    Ways in: Hermite, Coons, B-splines and NURBS, quadrics.
 //! 4. [`forward`]: the point engine. Every lattice point is `floor(S + 1/2)` of the exact surface, by proof.
 //! 5. [`subdivide`]: parts of nets, bounds, how patches meet, watertight meshes.
-//! 6. [`intersect`]: curves in which two surfaces meet, contour lines, nearest points.
-//! 7. [`render`]: bands of pixels with depth test, shaded or as lines, the same bytes for every band height.
-//! 8. `graphics`: drawables, strokes of curves, and colours (feature `graphics`, default).
-//! 9. `reference`: the independent `f64` oracle to check scenes against (feature `std`, hosts only).
+//! 6. [`mesh`] and [`g1`]: triangle meshes, checked; smooth skins over them.
+//! 7. [`intersect`]: curves in which two surfaces meet, contour lines, nearest points.
+//! 8. [`render`]: bands of pixels with depth test, shaded or as lines, the same bytes for every band height.
+//! 9. `graphics`: drawables, strokes of curves, and colours (feature `graphics`, default).
+//! 10. `reference`: the independent `f64` oracle to check scenes against (feature `std`, hosts only).
 //!
 //! # Features
 //! | feature | brings |
