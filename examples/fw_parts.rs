@@ -62,7 +62,7 @@ const fn setup(
 /// Displays that go with parts of such a size.
 pub(crate) const SETUPS: [Setup; 8] = [
     setup(M0, (128, 64, 8), true, Fill::Exact),
-    setup(M0, (128, 64, 8), true, Fill::Grid(0)),
+    setup(M0, (128, 64, 4), true, Fill::Grid(0)),
     setup(M3, (160, 128, 16), false, Fill::Exact),
     setup(M3, (160, 128, 16), false, Fill::Grid(600)),
     setup(M4, (320, 240, 16), false, Fill::Exact),

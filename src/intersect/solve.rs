@@ -166,7 +166,11 @@ impl Solver<'_, '_, '_> {
             return self.out.finish(open, false, [begin, last], first);
         }
         if let Some(points) = self.out.points.get_mut(first..self.out.used) {
-            points.reverse();
+            // Not `reverse`, which leaves a panic in images built for speed.
+            let mut ends = points.iter_mut();
+            while let (Some(one), Some(other)) = (ends.next(), ends.next_back()) {
+                core::mem::swap(one, other);
+            }
             points.iter_mut().for_each(|p| *p = p.turned());
         }
         // A closed curve that was lost comes back to where that was.
