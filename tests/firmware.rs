@@ -12,7 +12,9 @@ mod fw_smoke;
 mod firmware;
 
 use embedded_surfaces::geometry::Point3;
-use firmware::{cargo, cargo_build, installed, installed_runner, offence, offences, run, runner, symbols};
+use firmware::{TARGETS, cargo_build_all, installed, installed_runner, offence, offences, run, runner, symbols};
+use std::path::PathBuf;
+use std::sync::OnceLock;
 
 #[test]
 fn thumbv6m() {
@@ -34,24 +36,29 @@ fn riscv32imc() {
     check("riscv32imc-unknown-none-elf");
 }
 
-/// The library alone, then every firmware with what it prints.
+/// Where the images of all targets are, which are built at once; the library alone is, too.
+fn images() -> &'static PathBuf {
+    static IMAGES: OnceLock<PathBuf> = OnceLock::new();
+    IMAGES.get_or_init(|| {
+        let targets = installed(&TARGETS);
+        // Nothing of it is run: that it builds, constant assertions included, does not depend on the level.
+        let plain = ["--lib", "--no-default-features", "--config", "profile.release.opt-level=0"];
+        cargo_build_all(&targets, "smoke", &plain);
+        cargo_build_all(&targets, "smoke", &["--example", "fw_smoke"])
+    })
+}
+
+/// Reads a firmware's symbols, runs it and compares what it prints.
 fn check(target: &str) {
     if installed(&[target]).is_empty() {
         return;
     }
-    // Nothing of it is run: that it builds, constant assertions included, does not depend on the level.
-    cargo("build", target, &["--lib", "--no-default-features"], &[("CARGO_PROFILE_RELEASE_OPT_LEVEL", "0")]);
-    check_example(target, "fw_smoke", &expected_line());
-}
-
-/// Builds a firmware, reads its symbols, runs it and compares what it prints.
-fn check_example(target: &str, example: &str, expected: &str) {
-    let image = cargo_build(target, &["--example", example]).join("examples").join(example);
+    let image = images().join(target).join("release/examples/fw_smoke");
     let offences = offences(&std::fs::read(&image).unwrap());
-    assert!(offences.is_empty(), "{example} on {target}: {offences:#?}");
+    assert!(offences.is_empty(), "{target}: {offences:#?}");
 
     let Some(runner) = installed_runner(target) else { return };
-    assert_eq!(run(&runner, &image), expected, "{example} on {target}");
+    assert_eq!(run(&runner, &image), expected_line(), "{target}");
 }
 
 /// floor(S + 1/2) of the patch's lattice by direct Bernstein sums: [i, j, x, y, z] in row order.

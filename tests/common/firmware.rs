@@ -68,11 +68,6 @@ pub(crate) const FOR_SIZE: (&str, &str) = ("CARGO_PROFILE_RELEASE_OPT_LEVEL", "s
 /// The examples that have something of the feature `asm`, built at once so that they share what they are built on.
 pub(crate) const WITH_ASSEMBLY: [&str; 6] = ["--example", "fw_bench", "--example", "fw_forms", "--features", "asm"];
 
-/// Runs `cargo build --release` and returns the folder with the results.
-pub(crate) fn cargo_build(target: &str, what: &[&str]) -> PathBuf {
-    cargo("build", target, what, &[])
-}
-
 /// Runs `cargo build` or `cargo rustc` for a target with variables of the environment, in a target directory of its own
 /// (the outer cargo may hold the lock of the usual one), and returns the folder with the results.
 pub(crate) fn cargo(command: &str, target: &str, what: &[&str], environment: &[(&str, &str)]) -> PathBuf {
