@@ -1,10 +1,14 @@
 //! Milliseconds to intersect two bicubic patches that cross in one curve, all points refined and the result certified.
 #![allow(missing_docs, clippy::unwrap_used)]
 
+#[path = "../examples/data/workspace.rs"]
+mod workspace;
+
 use criterion::Criterion;
-use embedded_surfaces::intersect::{Branch, Buffers, Curve, CurvePoint, Options, Room, intersect};
+use embedded_surfaces::intersect::{Options, Room, intersect};
 use embedded_surfaces::patch::{BicubicPatch, Surface};
 use std::hint::black_box;
+use workspace::Workspace;
 
 static WAVE: BicubicPatch = embedded_surfaces::const_net!(BicubicPatch::from_ints([
     [[-300, -300, 10], [-300, -100, 60], [-300, 100, -40], [-300, 300, 20]],
@@ -24,23 +28,11 @@ fn main() {
     for depth in [5, 6] {
         let options = Options::DEFAULT.with_depth(depth);
         let room = Room::new(WAVE.surface(), WALL.surface(), depth).unwrap();
-        let (mut vertices, mut boxes) = (vec![[0; 3]; room.vertices], vec![[[0; 3]; 2]; room.boxes]);
-        let (mut records, mut links) = (vec![0; 4000], vec![0; 4000]);
-        let (mut points, mut curves) = (vec![CurvePoint::BLANK; 1000], vec![Curve::BLANK; 9]);
-        let mut branches = [Branch::BLANK; 2];
+        let mut workspace = Workspace::new(&room, 2000, 1000, 9);
         criterion.bench_function(&format!("two bicubic patches, depth {depth}"), |bencher| {
             bencher.iter(|| {
-                let buffers = Buffers {
-                    vertices: &mut vertices,
-                    boxes: &mut boxes,
-                    records: &mut records,
-                    links: &mut links,
-                    points: &mut points,
-                    curves: &mut curves,
-                    branches: &mut branches,
-                };
-                let found =
-                    intersect(black_box(&WAVE).surface(), black_box(&WALL).surface(), &options, buffers).unwrap();
+                let [a, b] = [black_box(&WAVE).surface(), black_box(&WALL).surface()];
+                let found = intersect(a, b, &options, workspace.buffers()).unwrap();
                 assert!(found.curves().len() == 1 && found.is_certified());
             });
         });

@@ -39,7 +39,7 @@ struct Arguments {
     #[arg(short, long, default_value = "g1.png")]
     output: PathBuf,
     /// Height and width of a single picture, in pixels
-    #[arg(long, default_value_t = 320)]
+    #[arg(long, default_value_t = 320, value_parser = clap::value_parser!(u32).range(16..=2048))]
     size: u32,
     /// Degrees that the model's z axis is tilted towards the viewer
     #[arg(long, default_value_t = 62.0, allow_negative_numbers = true)]
@@ -91,7 +91,7 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             ("duck".to_owned(), polyhedra::duck()),
         ],
     };
-    let size = arguments.size.clamp(16, 4096);
+    let size = arguments.size;
     let whole = Size::new(size * SCHEMES.len() as u32, size * models.len() as u32);
     let mut picture = SimulatorDisplay::with_default_color(whole, Rgb888::WHITE);
     for (row, (name, mesh)) in models.iter().enumerate() {

@@ -7,6 +7,8 @@
 mod command;
 #[path = "data/draw.rs"]
 mod draw;
+#[path = "data/workspace.rs"]
+mod workspace;
 
 use clap::Parser;
 use embedded_graphics::geometry::Point as Place;
@@ -16,15 +18,14 @@ use embedded_graphics::primitives::{Circle, Line, PrimitiveStyle, Rectangle};
 use embedded_graphics_simulator::{OutputSettings, SimulatorDisplay};
 use embedded_surfaces::geometry::{Affine, Point3, View};
 use embedded_surfaces::graphics::Ramps;
-use embedded_surfaces::intersect::{
-    Branch, Buffers, Curve, CurveKind, CurvePoint, Intersection, Options, Room, intersect,
-};
+use embedded_surfaces::intersect::{CurveKind, CurvePoint, Intersection, Options, Room, intersect};
 use embedded_surfaces::num::{Angle, I16F16};
 use embedded_surfaces::patch::{BicubicPatch, Surface};
 use embedded_surfaces::render::{Area, Light, Scene, Style};
 use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use workspace::Workspace;
 
 /// Intersect pairs of patches and draw them.
 #[derive(Parser)]
@@ -144,20 +145,8 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     for (k, (name, patches)) in pairs()?.iter().enumerate() {
         let [a, b] = [patches[0].surface(), patches[1].surface()];
         let room = Room::new(a, b, options.depth)?;
-        let (mut vertices, mut boxes) = (vec![[0; 3]; room.vertices], vec![[[0; 3]; 2]; room.boxes]);
-        let (mut records, mut links) = (vec![0; 1 << 16], vec![0; 1 << 16]);
-        let (mut points, mut curves) = (vec![CurvePoint::BLANK; 10_000], vec![Curve::BLANK; 99]);
-        let mut branches = [Branch::BLANK; 9];
-        let buffers = Buffers {
-            vertices: &mut vertices,
-            boxes: &mut boxes,
-            records: &mut records,
-            links: &mut links,
-            points: &mut points,
-            curves: &mut curves,
-            branches: &mut branches,
-        };
-        let found = intersect(a, b, &options, buffers)?;
+        let mut workspace = Workspace::new(&room, 1 << 15, 10_000, 99);
+        let found = intersect(a, b, &options, workspace.buffers())?;
         table(name, &found);
         let part = picture(patches, &found, size)?;
         let corner = Place::new((k as u32 % 2 * size) as i32, (k as u32 / 2 * size) as i32);

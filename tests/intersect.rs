@@ -16,36 +16,11 @@ use embedded_surfaces::intersect::{
 use embedded_surfaces::num::I16F16;
 use embedded_surfaces::patch::{BicubicPatch, BilinearPatch, Curve as Line, Surface};
 use embedded_surfaces::reference;
-use meeting::{Meeting, Patch, distance, dot, minus, position, tangent};
+use meeting::{Meeting, Patch, cases, distance, dot, expected, minus, position, tangent};
 use proptest::prelude::*;
 use serde_json::Value;
 
 const OPTIONS: Options = Options::DEFAULT;
-
-fn cases() -> Vec<Value> {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/intersect.json");
-    let file: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
-    file["cases"].as_array().unwrap().clone()
-}
-
-/// The kinds, the length where it is known, and the arms that a case must have.
-fn expected(case: &Value) -> (Vec<String>, Option<f64>, Vec<u64>) {
-    if let Some(expect) = case.get("expect") {
-        let kinds = expect["kinds"].as_object().unwrap();
-        let mut all: Vec<String> = Vec::new();
-        for (kind, count) in kinds {
-            all.extend(std::iter::repeat_n(kind.clone(), count.as_u64().unwrap() as usize));
-        }
-        all.sort_unstable();
-        let arms = expect["branches"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).collect();
-        return (all, expect["length"].as_f64(), arms);
-    }
-    let reference = &case["reference"];
-    let components = reference["components"].as_array().unwrap();
-    let mut kinds: Vec<_> = components.iter().map(|c| c["kind"].as_str().unwrap().to_owned()).collect();
-    kinds.sort_unstable();
-    (kinds, reference["total_length"].as_f64(), Vec::new())
-}
 
 fn check(name: &str, case: &Value, found: &Meeting) {
     let (kinds, length, arms) = expected(case);

@@ -1,6 +1,10 @@
 //! Meshes: links, faces, half-edges, rings, normals, and errors.
 
+#[path = "../data/cube.rs"]
+mod cube;
+
 use super::{Digest, Sum, hide};
+pub(super) use cube::TRIANGLES;
 use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::mesh::{Faces, HalfEdge, Links, Mesh, Spoke};
 use embedded_surfaces::num::{Coord, I16F16, I32F32};
@@ -14,20 +18,6 @@ pub(super) const CUBE: [[i16; 3]; 8] = [
     [40, -40, 40],
     [40, 40, -40],
     [40, 40, 40],
-];
-pub(super) const TRIANGLES: [[u16; 3]; 12] = [
-    [0, 1, 3],
-    [0, 3, 2],
-    [4, 6, 7],
-    [4, 7, 5],
-    [0, 4, 5],
-    [0, 5, 1],
-    [2, 3, 7],
-    [2, 7, 6],
-    [0, 2, 6],
-    [0, 6, 4],
-    [1, 5, 7],
-    [1, 7, 3],
 ];
 const QUADS: [[u16; 4]; 2] = [[0, 1, 3, 2], [0, 4, 5, 1]];
 const CORNERS: [u16; 7] = [0, 1, 3, 2, 0, 4, 1];

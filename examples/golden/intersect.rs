@@ -2,11 +2,11 @@
 
 use crate::case::Patch;
 use crate::field::{Field, Malformed};
+use crate::workspace::{Workspace, name};
 use crate::{Answer, typed_error};
 use embedded_surfaces::geometry::{Point3, Vector3};
 use embedded_surfaces::intersect::{
-    Branch, Buffers, Curve, CurveKind, CurvePoint, End, I2F30, I16F48, I20F44, IntersectError, Intersection, Options,
-    Room, Side, intersect,
+    Branch, Curve, CurvePoint, End, I2F30, I16F48, I20F44, IntersectError, Intersection, Options, Room, Side, intersect,
 };
 use embedded_surfaces::patch::SurfaceNet;
 use serde_json::{Map, Value, json};
@@ -58,23 +58,10 @@ fn end(end: End) -> Value {
     }
 }
 
-fn kind(kind: CurveKind) -> &'static str {
-    match kind {
-        CurveKind::Closed => "closed_curve",
-        CurveKind::TangentPoint => "tangent_point",
-        CurveKind::Tangential => "tangential_curve",
-        CurveKind::SharedEdge => "shared_edge",
-        CurveKind::SharedEdgeTangential => "shared_edge_tangential",
-        CurveKind::EdgeOnSurface => "edge_on_surface",
-        CurveKind::OverlapRegion => "overlap_region",
-        _ => "open_curve",
-    }
-}
-
 fn component(result: &Intersection<'_>, curve: &Curve) -> Value {
     let ends = if curve.ends == [End::None; 2] { Value::Null } else { json!(curve.ends.map(end)) };
     json!({
-        "kind": kind(curve.kind),
+        "kind": name(curve.kind),
         "closed": curve.closed,
         "length": space(curve.length),
         "min_sin": unit(curve.min_sine),
@@ -108,22 +95,10 @@ fn answer(result: &Intersection<'_>) -> Map<String, Value> {
 fn run_nets(a: SurfaceNet<'_>, b: SurfaceNet<'_>) -> Result<Map<String, Value>, IntersectError> {
     let options = Options::DEFAULT.with_depth(DEPTH);
     let room = Room::new(a, b, DEPTH)?;
-    let (mut vertices, mut boxes) = (vec![[0; 3]; room.vertices], vec![[[0; 3]; 2]; room.boxes]);
     let (mut segments, mut points, mut curves) = (1 << 14, 1 << 13, 1 << 6);
     loop {
-        let (mut records, mut links) = (vec![0; 2 * segments], vec![0; 2 * segments]);
-        let mut room = vec![CurvePoint::BLANK; points];
-        let (mut list, mut branches) = (vec![Curve::BLANK; curves], vec![Branch::BLANK; curves]);
-        let buffers = Buffers {
-            vertices: &mut vertices,
-            boxes: &mut boxes,
-            records: &mut records,
-            links: &mut links,
-            points: &mut room,
-            curves: &mut list,
-            branches: &mut branches,
-        };
-        match intersect(a, b, &options, buffers) {
+        let mut workspace = Workspace::new(&room, segments, points, curves);
+        match intersect(a, b, &options, workspace.buffers()) {
             Ok(result) => return Ok(answer(&result)),
             Err(IntersectError::SegmentBuffer { .. }) if segments < 1 << 20 => segments *= 4,
             Err(IntersectError::Buffer { .. }) if points < 1 << 20 => (points, curves) = (4 * points, 4 * curves),

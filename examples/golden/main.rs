@@ -14,6 +14,8 @@ mod lattice;
 mod render;
 mod tessellate;
 mod view;
+#[path = "../data/workspace.rs"]
+mod workspace;
 
 use clap::{Parser, ValueEnum};
 use field::{Field, Malformed};

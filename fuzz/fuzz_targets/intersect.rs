@@ -1,14 +1,16 @@
 //! Two patches of any kind, near each other, alike or degenerate: no panic, and no rule of the method is broken.
 #![no_main]
 
+#[path = "../../examples/data/workspace.rs"]
+mod workspace;
+
 use arbitrary::{Result, Unstructured};
 use embedded_surfaces::geometry::{Axis, Point3};
-use embedded_surfaces::intersect::{
-    Branch, Buffers, Curve, CurvePoint, IntersectError, Options, Room, intersect, project, section,
-};
+use embedded_surfaces::intersect::{IntersectError, Options, Room, intersect, project, section};
 use embedded_surfaces::num::I16F16;
 use embedded_surfaces::patch::{RationalTensorNet, RationalTriangleNet, SurfaceNet, TensorNet, TriangleNet};
 use libfuzzer_sys::fuzz_target;
+use workspace::Workspace;
 
 struct Patch {
     triangle: bool,
@@ -67,21 +69,10 @@ fn check(u: &mut Unstructured<'_>) -> Result<()> {
     let (Some(a), Some(b)) = (one.net(), two.net()) else { return Ok(()) };
     let options = Options::DEFAULT.with_depth(u.int_in_range(3..=5)?).with_budgets(1 << 16, 1 << 8);
     let Ok(room) = Room::new(a, b, options.depth) else { panic!("the depth is legal") };
-    let (mut vertices, mut boxes) = (vec![[0; 3]; room.vertices], vec![[[0; 3]; 2]; room.boxes]);
-    let (mut records, mut links) = (vec![0; 1 << 12], vec![0; 1 << 12]);
-    let (mut points, mut curves) = (vec![CurvePoint::BLANK; 1 << 10], vec![Curve::BLANK; 32]);
-    let mut branches = [Branch::BLANK; 4];
+    let mut workspace = Workspace::new(&room, 1 << 11, 1 << 10, 32);
     let at = I16F16::from_bits(u.arbitrary()?);
     for turn in 0..3 {
-        let buffers = Buffers {
-            vertices: &mut vertices,
-            boxes: &mut boxes,
-            records: &mut records,
-            links: &mut links,
-            points: &mut points,
-            curves: &mut curves,
-            branches: &mut branches,
-        };
+        let buffers = workspace.buffers();
         let result = match turn {
             0 => intersect(a, b, &options, buffers),
             1 => intersect(b, a, &options, buffers),
@@ -89,7 +80,8 @@ fn check(u: &mut Unstructured<'_>) -> Result<()> {
         };
         assert!(!matches!(result, Err(IntersectError::Internal)), "a rule is broken");
     }
-    assert!(project(b, one.points[0], options.depth, &mut vertices, &mut boxes).is_ok());
+    let buffers = workspace.buffers();
+    assert!(project(b, one.points[0], options.depth, buffers.vertices, buffers.boxes).is_ok());
     Ok(())
 }
 

@@ -2,6 +2,9 @@
 //! do not panic, and what comes out has neighbours with the same bits along their edge.
 #![no_main]
 
+#[path = "../../examples/data/cube.rs"]
+mod cube;
+
 use arbitrary::{Result, Unstructured};
 use embedded_surfaces::g1::{Controls, Interpolant, Lengths, Options, Scheme, Shift, Tangent, Twist};
 use embedded_surfaces::geometry::{Point3, Vector3};
@@ -19,20 +22,7 @@ const SHAPES: [&[[u16; 3]]; 5] = [
     &[[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]],
     &[[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5], [0, 5, 6], [0, 6, 1]],
     &[[0, 1, 2], [2, 1, 3], [2, 3, 4], [4, 3, 5], [4, 5, 6], [6, 5, 7]],
-    &[
-        [0, 1, 3],
-        [0, 3, 2],
-        [4, 6, 7],
-        [4, 7, 5],
-        [0, 4, 5],
-        [0, 5, 1],
-        [2, 3, 7],
-        [2, 7, 6],
-        [0, 2, 6],
-        [0, 6, 4],
-        [1, 5, 7],
-        [1, 7, 3],
-    ],
+    &cube::TRIANGLES,
 ];
 
 fn number(u: &mut Unstructured<'_>) -> Result<I32F32> {

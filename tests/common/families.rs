@@ -1,6 +1,9 @@
 //! Random meshes of the families that the scheme was measured on, and regular ones.
 #![allow(dead_code, reason = "each test uses its part")]
 
+#[path = "../../examples/data/cube.rs"]
+mod cube;
+
 use super::skin::{Skin, V3, cross, dot, length, minus, plus, times, unit};
 use std::collections::{BTreeSet, HashMap};
 use std::f64::consts::TAU;
@@ -88,21 +91,7 @@ pub(crate) fn octahedron() -> Skin {
 
 pub(crate) fn cube() -> Skin {
     let corner = |i: u8| [4, 2, 1].map(|bit| if i & bit == 0 { -1.0 } else { 1.0 });
-    let faces = [
-        [0, 1, 3],
-        [0, 3, 2],
-        [4, 6, 7],
-        [4, 7, 5],
-        [0, 4, 5],
-        [0, 5, 1],
-        [2, 3, 7],
-        [2, 7, 6],
-        [0, 2, 6],
-        [0, 6, 4],
-        [1, 5, 7],
-        [1, 7, 3],
-    ];
-    Skin { points: (0..8).map(corner).collect(), faces: faces.to_vec(), normals: None }
+    Skin { points: (0..8).map(corner).collect(), faces: cube::TRIANGLES.to_vec(), normals: None }
 }
 
 pub(crate) fn bipyramid(count: u16) -> Skin {

@@ -1,13 +1,45 @@
 //! Patches of case files as nets, intersections with growing buffers, curves in `f64`.
 
+#[path = "../../examples/data/workspace.rs"]
+mod workspace;
+
 use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::intersect::{
-    Branch, Buffers, Curve, CurveKind, CurvePoint, IntersectError, Intersection, Options, Room, intersect,
+    Branch, Buffers, Curve, CurvePoint, IntersectError, Intersection, Options, Room, intersect,
 };
 use embedded_surfaces::num::I16F16;
 use embedded_surfaces::patch::{RationalTensorNet, RationalTriangleNet, SurfaceNet, TensorNet, TriangleNet};
 use embedded_surfaces::reference::fixed_half_up;
 use serde_json::Value;
+use workspace::{Workspace, name};
+
+/// Their file.
+pub(crate) const CASES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/intersect.json");
+
+/// The pairs of `tests/golden/intersect.json`.
+pub(crate) fn cases() -> Vec<Value> {
+    let file: Value = serde_json::from_str(&std::fs::read_to_string(CASES).unwrap()).unwrap();
+    file["cases"].as_array().unwrap().clone()
+}
+
+/// The kinds, the length where it is known, and the arms that a case must have.
+pub(crate) fn expected(case: &Value) -> (Vec<String>, Option<f64>, Vec<u64>) {
+    if let Some(expect) = case.get("expect") {
+        let kinds = expect["kinds"].as_object().unwrap();
+        let mut all: Vec<String> = Vec::new();
+        for (kind, count) in kinds {
+            all.extend(std::iter::repeat_n(kind.clone(), count.as_u64().unwrap() as usize));
+        }
+        all.sort_unstable();
+        let arms = expect["branches"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).collect();
+        return (all, expect["length"].as_f64(), arms);
+    }
+    let reference = &case["reference"];
+    let components = reference["components"].as_array().unwrap();
+    let mut kinds: Vec<_> = components.iter().map(|c| c["kind"].as_str().unwrap().to_owned()).collect();
+    kinds.sort_unstable();
+    (kinds, reference["total_length"].as_f64(), Vec::new())
+}
 
 /// A patch with its control points.
 #[derive(Clone, Debug)]
@@ -98,21 +130,8 @@ impl Meeting {
     ) -> Result<Self, IntersectError> {
         let nets = [a.net(), b.net()];
         let room = Room::new(nets[0], nets[1], options.depth)?;
-        let mut vertices = vec![[0; 3]; room.vertices];
-        let mut boxes = vec![[[0; 3]; 2]; room.boxes];
-        let (mut records, mut links) = (vec![0; 1 << 16], vec![0; 1 << 16]);
-        let mut points = vec![CurvePoint::BLANK; 1 << 15];
-        let (mut curves, mut branches) = (vec![Curve::BLANK; 64], vec![Branch::BLANK; 16]);
-        let buffers = Buffers {
-            vertices: &mut vertices,
-            boxes: &mut boxes,
-            records: &mut records,
-            links: &mut links,
-            points: &mut points,
-            curves: &mut curves,
-            branches: &mut branches,
-        };
-        let result = run(buffers, nets, options)?;
+        let mut workspace = Workspace::new(&room, 1 << 15, 1 << 15, 64);
+        let result = run(workspace.buffers(), nets, options)?;
         Ok(Self {
             curves: result.curves().iter().map(|c| (*c, result.points(c).to_vec())).collect(),
             branches: result.branches().to_vec(),
@@ -130,19 +149,6 @@ impl Meeting {
 
     pub(crate) fn length(&self) -> f64 {
         self.curves.iter().map(|(c, _)| c.length.to_num::<f64>()).sum()
-    }
-}
-
-pub(crate) fn name(kind: CurveKind) -> &'static str {
-    match kind {
-        CurveKind::Closed => "closed_curve",
-        CurveKind::TangentPoint => "tangent_point",
-        CurveKind::Tangential => "tangential_curve",
-        CurveKind::SharedEdge => "shared_edge",
-        CurveKind::SharedEdgeTangential => "shared_edge_tangential",
-        CurveKind::EdgeOnSurface => "edge_on_surface",
-        CurveKind::OverlapRegion => "overlap_region",
-        _ => "open_curve",
     }
 }
 
