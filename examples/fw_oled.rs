@@ -8,8 +8,7 @@
 //! cargo run --release --target thumbv7m-none-eabi --example fw_oled
 //! ```
 //!
-//! At the default optimisation level 3 the image is larger than the flash; at `s` it takes 112 KB, and 28 KB of RAM
-//! with the stack.
+//! At level `s` it takes 44 KB of flash, and 26 KB of RAM with the stack.
 //!
 //! It turns for ever. A byte n on the serial line asks for a halt: at the first frame from n on the board answers
 //! `READY` with the frame's number and waits for the next byte. `tests/firmware_oled.rs` compares the panel with the

@@ -2,9 +2,9 @@
 //! while the other is sent.
 //!
 //! `cargo run --example mipidsi` prints what went over the wires to a mock of an ILI9341, 320 × 240 pixels in 16 bits;
-//! `cargo run --release --target thumbv7em-none-eabihf --example mipidsi` does the same under QEMU (for size, with
-//! `CARGO_PROFILE_RELEASE_OPT_LEVEL=s`, or it exceeds the 256 KB of `memory.x`). For a display of your own, put `mipidsi`'s `SpiInterface` or `ParallelInterface` in the place of [`Mock`], and what your chip does
-//! beside its processor (DMA, a second core) into [`join`].
+//! `cargo run --release --target thumbv7em-none-eabihf --example mipidsi` does the same under QEMU. For a display of your
+//! own, put `mipidsi`'s `SpiInterface` or `ParallelInterface` in the place of [`Mock`], and what your chip does beside its
+//! processor (DMA, a second core) into [`join`].
 //!
 //! `tests/mipidsi.rs` obeys the recorded commands and compares with a picture drawn at once.
 #![cfg_attr(target_os = "none", no_std, no_main)]

@@ -43,9 +43,8 @@ fn the_panel_shows_what_the_host_draws() {
     if firmware::installed(&[TARGET]).is_empty() {
         return;
     }
-    // At the default level 3 the renderer alone is larger than the flash.
-    let small = [firmware::FOR_SIZE];
-    let image = firmware::cargo("build", TARGET, &["--example", "fw_oled"], &small).join("examples/fw_oled");
+    let image =
+        firmware::cargo("build", TARGET, &["--example", "fw_oled"], &[firmware::FOR_SIZE]).join("examples/fw_oled");
     let elf = std::fs::read(&image).unwrap();
     let (flash, statics) = firmware::sizes(&elf);
     assert!(flash <= FLASH, "{flash} bytes of flash");

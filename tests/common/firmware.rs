@@ -62,7 +62,7 @@ fn program_is_installed(program: &str) -> bool {
     Command::new(program).arg("--version").output().is_ok()
 }
 
-/// What has the renderer fit the 256 KB of `memory.x`: at level 3 it does not.
+/// Firmware is measured as small parts want it. What draws patches of every kind exceeds the 256 KB of `memory.x` at level 3.
 pub(crate) const FOR_SIZE: (&str, &str) = ("CARGO_PROFILE_RELEASE_OPT_LEVEL", "s");
 
 /// The examples that have something of the feature `asm`, built at once so that they share what they are built on.
