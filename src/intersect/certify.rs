@@ -46,10 +46,14 @@ impl Report {
         if self.list().any(|known| close(&known.at, &found.at)) {
             return true;
         }
-        let Some(place) = self.contacts.get_mut(self.count) else { return false };
-        *place = Some(found);
-        self.count += 1;
-        true
+        if let Some(place) = self.contacts.get_mut(self.count) {
+            *place = Some(found);
+            self.count += 1;
+            return true;
+        }
+        // A tangency is worth more than a hint.
+        let hint = self.contacts.iter_mut().find(|c| found.touches && c.is_some_and(|c| !c.touches));
+        hint.map(|place| *place = Some(found)).is_some()
     }
 }
 
@@ -99,11 +103,12 @@ impl<F: FnMut(Query<'_>) -> bool> Search<'_, '_, F> {
             return Verdict::Decided;
         }
         let level = over_a.level.min(over_b.level);
-        if level >= 4 {
-            let near = |f: &Found| f.touches && over_a.holds(f.at[0], 0) && over_b.holds(f.at[1], 0);
-            if self.report.list().any(near) {
+        if level >= 4 && self.touching_in(regions) > 0 {
+            self.probe(a, b, regions);
+            if self.touching_in(regions) == 1 || level >= 7 {
                 return Verdict::Explained;
             }
+            return Verdict::Open;
         }
         if level >= 6 {
             let centre = self.pair.sheets[0].eval(over_a.centre(self.pair.sheets[0].triangle), 0);
@@ -119,20 +124,85 @@ impl<F: FnMut(Query<'_>) -> bool> Search<'_, '_, F> {
         Verdict::Open
     }
 
+    /// Halves pairs that are not decided down to a level, while there is budget; true if none is left.
+    fn descend(&mut self, deepest: u8, budget: u32) -> bool {
+        let mut stack = [[Region::ROOT; 2]; STACK];
+        let mut height = 1;
+        let mut parts = [Part::BLANK; 2];
+        let mut left = 0_u32;
+        while height > 0 {
+            height -= 1;
+            let Some(regions) = stack.get(height).copied() else { break };
+            if self.report.visited >= budget {
+                left = left.saturating_add(height as u32 + 1);
+                break;
+            }
+            self.report.visited += 1;
+            for ((part, region), sheet) in parts.iter_mut().zip(regions).zip(&self.pair.sheets) {
+                if part.region != Some(region) {
+                    part.load(sheet, region);
+                }
+            }
+            let [a, b] = &mut parts;
+            let verdict = self.judge(a, b, regions);
+            let ends = regions.map(|r| r.level >= deepest);
+            if verdict == Verdict::Decided {
+                continue;
+            }
+            if verdict == Verdict::Explained || (ends[0] && ends[1]) {
+                left = left.saturating_add(1);
+                continue;
+            }
+            let split = usize::from(ends[0] || (!ends[1] && parts[1].size() > parts[0].size()));
+            for quarter in regions[split].quarters(self.pair.sheets[split].triangle) {
+                if let Some(place) = stack.get_mut(height) {
+                    *place = regions;
+                    place[split] = quarter;
+                    height += 1;
+                }
+            }
+        }
+        self.report.undecided = self.report.undecided.saturating_add(left);
+        left == 0
+    }
+
+    /// Tangencies known in a pair.
+    fn touching_in(&self, [over_a, over_b]: [Region; 2]) -> usize {
+        self.report.list().filter(|f| f.touches && over_a.holds(f.at[0], 0) && over_b.holds(f.at[1], 0)).count()
+    }
+
+    /// Looks for a second tangency in a pair with one, from the quarters of A's part.
+    fn probe(&mut self, a: &Part, b: &Part, [over_a, over_b]: [Region; 2]) {
+        let size = a.extent().min(b.extent());
+        let triangle = self.pair.sheets[0].triangle;
+        for quarter in over_a.quarters(triangle) {
+            let at = [quarter.centre(triangle), over_b.centre(self.pair.sheets[1].triangle)];
+            let Some(contact) = self.contact_near(at, size) else { continue };
+            let touches = contact.apart.norm() <= self.pair.touching();
+            let near = over_a.holds(contact.at[0], 1) && over_b.holds(contact.at[1], 1);
+            if near && touches && self.pair.inside(contact.at, 1 << 20) {
+                self.report.enter(Found { at: contact.at, form: contact.form(), touches });
+            }
+        }
+    }
+
+    /// The point with collinear normals near a place of A, no farther than twice a size, from B's foot under it.
+    fn contact_near(&self, mut at: Places, size: Real) -> Option<Contact> {
+        let centre = self.pair.sheets[0].eval(at[0], 0);
+        if let Some((foot, _)) = centre.and_then(|jet| self.pair.foot(1, at[1], jet.point)) {
+            at[1] = foot;
+        }
+        self.pair.critical(at, size.shl(1))
+    }
+
     /// Looks for a point with collinear normals near a pair; true if it lies on a curve that is known.
     fn search(&mut self, a: &Part, b: &Part, [over_a, over_b]: [Region; 2]) -> bool {
         let known = |f: &Found| over_a.holds(f.at[0], 1) && over_b.holds(f.at[1], 1);
         if self.report.list().any(known) {
             return false;
         }
-        let mut at = [over_a.centre(self.pair.sheets[0].triangle), over_b.centre(self.pair.sheets[1].triangle)];
-        let size = a.extent().min(b.extent());
-        // B's foot under A's centre, before anything is judged.
-        let centre = self.pair.sheets[0].eval(at[0], 0);
-        if let Some((foot, _)) = centre.and_then(|jet| self.pair.foot(1, at[1], jet.point)) {
-            at[1] = foot;
-        }
-        let Some(contact) = self.pair.critical(at, size.shl(1)) else { return false };
+        let at = [over_a.centre(self.pair.sheets[0].triangle), over_b.centre(self.pair.sheets[1].triangle)];
+        let Some(contact) = self.contact_near(at, a.extent().min(b.extent())) else { return false };
         let near = over_a.holds(contact.at[0], 1) && over_b.holds(contact.at[1], 1);
         if !near {
             return false;
@@ -153,49 +223,18 @@ impl<F: FnMut(Query<'_>) -> bool> Search<'_, '_, F> {
     }
 }
 
+/// Levels of the first pass, which looks for tangencies all over before the second goes deep anywhere.
+const SHALLOW: u8 = 6;
+
 /// Runs the test on at most `budget` pairs; `known` answers what is known of tangencies.
 #[inline(never)]
 pub(super) fn test(pair: &Pair<'_>, budget: u32, known: impl FnMut(Query<'_>) -> bool) -> Report {
     let report = Report { contacts: [None; CONTACTS], count: 0, undecided: 0, visited: 0 };
     let mut search = Search { pair, known, report };
-    let mut stack = [[Region::ROOT; 2]; STACK];
-    let mut height = 1;
-    let mut parts = [Part::BLANK; 2];
-    while height > 0 {
-        height -= 1;
-        let Some(regions) = stack.get(height).copied() else { break };
-        if search.report.visited >= budget {
-            search.report.undecided = search.report.undecided.saturating_add(height as u32 + 1);
-            break;
-        }
-        search.report.visited += 1;
-        for ((part, region), sheet) in parts.iter_mut().zip(regions).zip(&pair.sheets) {
-            if part.region != Some(region) {
-                part.load(sheet, region);
-            }
-        }
-        let [a, b] = &mut parts;
-        match search.judge(a, b, regions) {
-            Verdict::Decided => continue,
-            Verdict::Explained => {
-                search.report.undecided = search.report.undecided.saturating_add(1);
-                continue;
-            }
-            Verdict::Open => {}
-        }
-        let ends = regions.map(|r| r.level >= DEEPEST);
-        if ends[0] && ends[1] {
-            search.report.undecided = search.report.undecided.saturating_add(1);
-            continue;
-        }
-        let split = usize::from(ends[0] || (!ends[1] && parts[1].size() > parts[0].size()));
-        for quarter in regions[split].quarters(pair.sheets[split].triangle) {
-            if let Some(place) = stack.get_mut(height) {
-                *place = regions;
-                place[split] = quarter;
-                height += 1;
-            }
-        }
+    let is_decided = search.descend(SHALLOW, budget / 2);
+    if !is_decided {
+        search.report.undecided = 0;
+        search.descend(DEEPEST, budget);
     }
     search.report
 }

@@ -105,7 +105,7 @@ impl Contact {
             plane[0] * (of_b[0] * x + of_b[1] * y - slope[0]) + plane[1] * (of_b[1] * x + of_b[2] * y - slope[1]);
         let curvatures = [first, last];
         let steps = both!(|k| {
-            let level = curvatures[k].abs() <= scale.shl(-14);
+            let level = curvatures[k].abs() <= scale.shl(-20);
             if level { Real::ZERO } else { right.dot(axes[k]) / curvatures[k] }
         });
         Some(Self { at, jets, apart, gap, curvatures, axes, scale, steps, beside })
@@ -124,7 +124,7 @@ impl Contact {
     }
 
     pub(super) fn form(&self) -> Form {
-        let level = |c: Real| c.abs() <= self.scale.shl(-14);
+        let level = |c: Real| c.abs() <= self.scale.shl(-20);
         match self.curvatures {
             [a, _] if level(a) => Form::Flat,
             [_, b] if level(b) => Form::Ridge,

@@ -257,8 +257,15 @@ impl Solver<'_, '_, '_> {
     fn arm(&self, contact: &Contact, direction: V3) -> Option<(Spot, bool)> {
         let point = contact.spot(self.pair).point;
         let rates = contact.rates(direction);
+        // Not past a branch next to it.
+        let others = self.out.branches().iter().map(|b| difference(b.point.bits(), point).norm());
+        let near = self.pair.extent.shl(-24);
+        let free = others.filter(|d| *d > near).fold(self.pair.extent, Real::min).shl(-1);
         for shift in [7, 9, 11, 13, 15] {
             let radius = self.pair.extent.shl(-shift);
+            if radius > free && shift < 15 {
+                continue;
+            }
             let at = Pair::followed(contact.at, &rates, radius);
             let Some(spot) = self.pair.in_plane(at, moved(point, direction * radius), direction) else { continue };
             let forward = !spot.tangent.dot(direction).is_negative();
@@ -283,17 +290,11 @@ impl Solver<'_, '_, '_> {
         let unit = |c: Real| I2F30::from_bits(c.nearest(30).clamp(-1 << 30, 1 << 30) as i32);
         let mut spot = contact.spot(self.pair);
         spot.tangent = directions[0];
-        let mut branch = Branch {
+        let branch = Branch {
             point: CurvePoint::of(&spot),
             directions: directions.map(|d| Vector3::from_array(d.0.map(unit))),
             ..Branch::BLANK
         };
-        for (k, direction) in directions.into_iter().enumerate() {
-            if let Some((arm, _)) = self.arm(contact, direction) {
-                branch.present[k] = true;
-                branch.taken[k] = self.is_covered(arm.point);
-            }
-        }
         let given = self.out.branches.len();
         let full = IntersectError::Buffer { buffer: Buffer::Branches, needed: given + 1, given };
         *self.out.branches.get_mut(self.out.branch_count).ok_or(full)? = branch;
@@ -301,8 +302,24 @@ impl Solver<'_, '_, '_> {
         Ok(())
     }
 
+    /// Looks which arms of the branches there are; those on a curve that is known are taken.
+    fn look_at_arms(&mut self) {
+        for b in 0..self.out.branch_count {
+            let Some(branch) = self.out.branches.get(b).copied() else { continue };
+            let Some(contact) = Contact::new(self.pair, branch.point.places()) else { continue };
+            for k in 0..4 {
+                let arm = self.arm(&contact, branch.direction(k));
+                let taken = arm.is_some_and(|(spot, _)| self.is_covered(spot.point));
+                if let Some(branch) = self.out.branches.get_mut(b) {
+                    (branch.present[k], branch.taken[k]) = (arm.is_some(), taken);
+                }
+            }
+        }
+    }
+
     /// Follows the arms of all branches.
     pub(super) fn arms(&mut self) -> Result<(), IntersectError> {
+        self.look_at_arms();
         for b in 0..self.out.branch_count {
             let Some(branch) = self.out.branches.get(b).copied() else { continue };
             let Some(contact) = Contact::new(self.pair, branch.point.places()) else { continue };
