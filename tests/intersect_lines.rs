@@ -8,7 +8,7 @@
 mod meeting;
 
 use embedded_surfaces::geometry::Point3;
-use embedded_surfaces::intersect::Options;
+use embedded_surfaces::intersect::{CurveKind, End, Options};
 use meeting::{Meeting, Patch};
 
 /// The domain of both patches is the square −96 ..= 96.
@@ -165,5 +165,27 @@ fn tangential_lines() {
         let found = Meeting::new(&a, &b, &Options::DEFAULT).unwrap();
         assert_eq!(found.kinds(), vec!["tangential_curve"; usize::from(inside)], "{line:?}");
         assert!(found.branches.is_empty() && (!inside || !found.certified), "{line:?}");
+    }
+}
+
+/// An edge that both patches share, and a line that may cross it: the edge is one component, the line ends on it.
+#[test]
+fn shared_edges_with_a_line_across() {
+    let mut numbers = Numbers(13);
+    let mut tried = 0;
+    while tried < 24 {
+        let line = numbers.line();
+        let edge = [1, 0, HALF];
+        let Some([a, b]) = cuts(&line).and_then(|_| pair(&[edge, line], &mut numbers)) else { continue };
+        tried += 1;
+        let found = Meeting::new(&a, &b, &Options::DEFAULT).unwrap();
+        let inside = usize::from(cuts(&line) == Some(true));
+        let mut kinds = vec!["open_curve"; inside];
+        kinds.push("shared_edge");
+        assert_eq!(found.kinds(), kinds, "{line:?}");
+        for (curve, _) in &found.curves {
+            let lost = |end: &End| matches!(end, End::Lost | End::None | End::Branch { .. });
+            assert!(curve.kind != CurveKind::Open || !curve.ends.iter().any(lost), "{line:?}: {:?}", curve.ends);
+        }
     }
 }

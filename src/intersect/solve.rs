@@ -121,22 +121,35 @@ impl Solver<'_, '_, '_> {
         cosine > Real::ONE - Real::power(-10)
     }
 
-    /// Whether the curve at a spot goes on inside both patches, in the spot's direction.
-    fn leads_inside(&self, spot: &Spot) -> bool {
-        let step = self.pair.extent.shl(-14);
-        self.pair.inside(Pair::followed(spot.at, &spot.rates, step), BORDER)
+    /// Whether the curve at a spot goes on inside both patches, in the spot's direction, by a share of 2^-`shift`.
+    fn leads_inside(&self, spot: &Spot, shift: i32) -> bool {
+        self.pair.inside(Pair::followed(spot.at, &spot.rates, self.pair.extent.shl(-shift)), BORDER)
     }
 
-    fn stop(&mut self, stop: Stop, spot: &Spot) -> End {
-        match stop {
+    fn stop(&mut self, stop: Stop, spot: &Spot) -> Result<End, IntersectError> {
+        Ok(match stop {
             Stop::Border => self.pair.end(spot.at),
             Stop::Branch(branch) => End::Branch { branch: branch as u16 },
             Stop::Closed => End::None,
             Stop::Lost => {
+                if let Some(last) = self.tangency_on_border(spot) {
+                    self.out.emit(&last)?;
+                    return Ok(self.pair.end(last.at));
+                }
                 self.undecided += 1;
                 End::Lost
             }
-        }
+        })
+    }
+
+    /// The tangency on a border next to the spot where a walk was lost, with the walk's tangent: a curve that ends on an edge
+    /// along which the surfaces meet.
+    fn tangency_on_border(&self, spot: &Spot) -> Option<Spot> {
+        let near = self.pair.extent.shl(-16);
+        let contact = self.pair.critical(spot.at, near)?;
+        let last = contact.spot(self.pair);
+        let sound = contact.apart.norm() <= self.pair.touching() && self.pair.end(last.at) != End::Lost;
+        sound.then_some(Spot { tangent: spot.tangent, rates: spot.rates, ..last })
     }
 
     /// Follows the curve through a spot in both directions and enters it.
@@ -147,7 +160,9 @@ impl Solver<'_, '_, '_> {
         };
         let first = self.out.used;
         let (ahead, behind) = (seed.oriented(true), seed.oriented(false));
-        let (forward, backward) = (self.leads_inside(&ahead), self.leads_inside(&behind));
+        // Curves that cut off next to nothing are shorter than the first share.
+        let inside = |shift| [self.leads_inside(&ahead, shift), self.leads_inside(&behind, shift)];
+        let [forward, backward] = [14, 20, 26].map(inside).into_iter().find(|i| i[0] || i[1]).unwrap_or([false; 2]);
         let pair = self.pair;
         let tracer = |forward| Tracer { pair, locus, forward, tolerance: self.tolerance };
         let (one, two) = (tracer(true), tracer(false));
@@ -160,7 +175,7 @@ impl Solver<'_, '_, '_> {
         if stop == Stop::Closed {
             return self.out.finish(closed, true, [End::None; 2], first);
         }
-        let last = self.stop(stop, &spot);
+        let last = self.stop(stop, &spot)?;
         if !(forward && backward) {
             let begin = pair.end(start.at);
             return self.out.finish(open, false, [begin, last], first);
@@ -179,7 +194,7 @@ impl Solver<'_, '_, '_> {
         if stop == Stop::Closed {
             return self.out.finish(closed, true, [End::None; 2], first);
         }
-        let end = self.stop(stop, &spot);
+        let end = self.stop(stop, &spot)?;
         self.out.finish(open, false, [last, end], first)
     }
 
@@ -342,7 +357,7 @@ impl Solver<'_, '_, '_> {
                     branch.taken[k] = true;
                 }
                 let (stop, last) = tracer.walk(&mut self.out, spot, None)?;
-                let end = self.stop(stop, &last);
+                let end = self.stop(stop, &last)?;
                 self.out.finish(CurveKind::Open, false, [End::Branch { branch: b as u16 }, end], first)?;
             }
         }
