@@ -44,11 +44,13 @@ pub(super) struct Pair<'a> {
     pub(super) extent: Real,
 }
 
+#[cfg_attr(target_pointer_width = "32", inline(never))]
 pub(super) fn difference(a: [i64; 3], b: [i64; 3]) -> V3 {
     V3::bits(three!(|k| a[k].wrapping_sub(b[k])), -POINT_BITS)
 }
 
 /// `point` + `move`, both in space.
+#[cfg_attr(target_pointer_width = "32", inline(never))]
 pub(super) fn moved(point: [i64; 3], by: V3) -> [i64; 3] {
     let by = by.fixed(POINT_BITS);
     three!(|k| point[k].wrapping_add(by[k]))
@@ -59,13 +61,15 @@ pub(super) fn middle(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
 }
 
 /// The parameters' move whose image under the derivatives is nearest to `by`; the normal is Su × Sv.
-#[inline]
+#[cfg_attr(target_pointer_width = "32", inline(never))]
+#[cfg_attr(not(target_pointer_width = "32"), inline)]
 pub(super) fn pull_back(first: &[V3; 2], normal: V3, by: V3) -> [Real; 2] {
     let inverse = Real::ONE / normal.square();
     [by.cross(first[1]).dot(normal) * inverse, first[0].cross(by).dot(normal) * inverse]
 }
 
 /// A place moved by parameters, within an eighth of the domain.
+#[cfg_attr(target_pointer_width = "32", inline(never))]
 pub(super) fn shifted(place: Place, by: [Real; 2]) -> Place {
     let step = |p: i64, d: Real| {
         let d = d.nearest(PARAMETER_BITS).clamp(-ONE, ONE);

@@ -4,11 +4,12 @@
 //! point of degrees (m, h) is within (m + h) / 2 units of the net's own scale, 2^-44 or 2^-42 for polynomial patches.
 
 use super::vector::V3;
-use crate::num::{Coord, I16F16, Real};
+use crate::num::{Coord, I16F16, Real, product_half_up};
 use crate::patch::{MAX_DEGREE, SurfaceNet, triangle_index, triangle_len};
 
 /// Fraction bits of parameters.
 pub(super) const PARAMETER_BITS: i32 = 48;
+const PARAMETER: u32 = PARAMETER_BITS as u32;
 /// The parameter 1.
 pub(super) const ONE: i64 = 1 << PARAMETER_BITS;
 /// Fraction bits of points.
@@ -65,8 +66,7 @@ struct Collapsed {
 /// `a + (b − a) t`, rounded half up.
 #[inline(always)]
 fn between(a: i64, b: i64, t: i64) -> i64 {
-    let product = i128::from(b.wrapping_sub(a)) * i128::from(t) + (1 << (PARAMETER_BITS - 1));
-    a.wrapping_add((product >> PARAMETER_BITS) as i64)
+    a.wrapping_add(product_half_up::<PARAMETER>(b.wrapping_sub(a), t))
 }
 
 #[inline(always)]

@@ -2,7 +2,10 @@
 //!
 //! A relative error of at most 2^-60 an operation, no overflow for exponents that geometry can reach, the same bits on
 //! every target. Only what intersection needs: sums, products, quotients, roots, comparisons.
+//!
+//! On targets of 32 bits an operation is a call: in place it would be 60 to 400 bytes of code, some thousand times.
 
+use super::round::product_down;
 use core::cmp::Ordering;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -32,6 +35,7 @@ impl Real {
     }
 
     /// `value` · 2^`exponent`, rounded down to the mantissa.
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
     pub(crate) const fn wide(value: i128, exponent: i32) -> Self {
         let shift = 66 - value.unsigned_abs().leading_zeros() as i32;
         if shift > 0 { Self::new((value >> shift) as i64, exponent + shift) } else { Self::new(value as i64, exponent) }
@@ -76,6 +80,8 @@ impl Real {
     }
 
     /// Nearest fixed-point value, half up, or the end of the range of an `i64`.
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
+    #[cfg_attr(not(target_pointer_width = "32"), inline)]
     pub(crate) fn nearest(self, fraction_bits: i32) -> i64 {
         (self + Self::power(-fraction_bits - 1)).fixed(fraction_bits)
     }
@@ -97,6 +103,7 @@ impl Real {
     }
 
     /// The square root; 0 for what is not positive.
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
     pub(crate) fn sqrt(self) -> Self {
         if self.mantissa <= 0 {
             return Self::ZERO;
@@ -144,7 +151,8 @@ impl Neg for Real {
 impl Add for Real {
     type Output = Self;
 
-    #[inline]
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
+    #[cfg_attr(not(target_pointer_width = "32"), inline)]
     fn add(self, other: Self) -> Self {
         if other.mantissa == 0 {
             return self;
@@ -173,10 +181,10 @@ impl Sub for Real {
 impl Mul for Real {
     type Output = Self;
 
-    #[inline]
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
+    #[cfg_attr(not(target_pointer_width = "32"), inline)]
     fn mul(self, other: Self) -> Self {
-        let product = (i128::from(self.mantissa) * i128::from(other.mantissa)) >> 62;
-        Self::new(product as i64, self.exponent + other.exponent + 62)
+        Self::new(product_down::<62>(self.mantissa, other.mantissa), self.exponent + other.exponent + 62)
     }
 }
 
@@ -184,7 +192,8 @@ impl Mul for Real {
 impl Div for Real {
     type Output = Self;
 
-    #[inline]
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
+    #[cfg_attr(not(target_pointer_width = "32"), inline)]
     fn div(self, other: Self) -> Self {
         let quotient = (i128::from(self.mantissa) << 61).checked_div(i128::from(other.mantissa)).unwrap_or(0);
         Self::new(quotient as i64, self.exponent - other.exponent - 61)
@@ -199,7 +208,8 @@ impl PartialOrd for Real {
 }
 
 impl Ord for Real {
-    #[inline]
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
+    #[cfg_attr(not(target_pointer_width = "32"), inline)]
     fn cmp(&self, other: &Self) -> Ordering {
         let sign = self.mantissa.signum().cmp(&other.mantissa.signum());
         if sign != Ordering::Equal || self.mantissa == 0 {

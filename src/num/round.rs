@@ -8,6 +8,41 @@ pub(crate) const fn shift_half_up(value: i128, shift: u32) -> i128 {
     if shift == 0 { value } else { (value + (1 << (shift - 1))) >> shift }
 }
 
+/// `floor(a · b / 2^SHIFT)` modulo 2^64, for a `SHIFT` of 33 to 62 and |b| ≤ 2^62.
+#[inline(always)]
+pub(crate) const fn product_down<const SHIFT: u32>(a: i64, b: i64) -> i64 {
+    if cfg!(target_pointer_width = "32") {
+        product_of_halves::<SHIFT>(a, b, 0)
+    } else {
+        ((a as i128 * b as i128) >> SHIFT) as i64
+    }
+}
+
+/// `floor(a · b / 2^SHIFT + 1/2)` modulo 2^64, for a `SHIFT` of 33 to 62 and |b| ≤ 2^62.
+#[inline(always)]
+pub(crate) const fn product_half_up<const SHIFT: u32>(a: i64, b: i64) -> i64 {
+    if cfg!(target_pointer_width = "32") {
+        product_of_halves::<SHIFT>(a, b, 1 << (SHIFT - 33))
+    } else {
+        ((a as i128 * b as i128 + (1 << (SHIFT - 1))) >> SHIFT) as i64
+    }
+}
+
+/// `floor((a · b + more · 2^32) / 2^SHIFT)` from products of halves, for targets of 32 bits.
+///
+/// With signed upper halves a₁, b₁ and unsigned lower ones, a·b = a₁b₁ 2^64 + (a₁b₀ + a₀b₁ + c) 2^32 + r with
+/// c = floor(a₀b₀ / 2^32); r is below 2^32 and does not matter. |a₀b₁| ≤ 2^62, so that its sum with c, `more` and what is
+/// below the shift in a₁b₀ is in the range of an `i64`.
+#[inline(always)]
+const fn product_of_halves<const SHIFT: u32>(a: i64, b: i64, more: i64) -> i64 {
+    let shift = SHIFT - 32;
+    let ([a0, b0], [a1, b1]) = ([a as u32, b as u32], [(a >> 32) as i32, (b >> 32) as i32]);
+    let carry = ((a0 as u64 * b0 as u64) >> 32) as i64;
+    let first = a1 as i64 * b0 as i64;
+    let rest = (first & ((1 << shift) - 1)) + b1 as i64 * a0 as i64 + carry + more;
+    (a1 as i64 * b1 as i64).wrapping_shl(32 - shift).wrapping_add(first >> shift).wrapping_add(rest >> shift)
+}
+
 /// `floor(value / divisor + 1/2)`; `None` for a divisor that is not positive.
 ///
 /// Exact for |value| < 2^125, divisor < 2^125: floor((2v + d) / 2d).
@@ -96,6 +131,26 @@ mod tests {
         assert_eq!(div_half_up(-5, 2), Some(-2));
         assert_eq!(div_half_up(5, 2), Some(3));
         assert_eq!(div_half_up(1, 0), None);
+    }
+
+    /// Both forms against 128-bit products, at the ends of the ranges too.
+    #[test]
+    fn products_of_halves_are_exact() {
+        let ends =
+            [i64::MIN, i64::MIN + 1, -1 << 62, -(1 << 32) - 1, -1 << 32, -1, 0, 1, (1 << 32) - 1, 1 << 32, i64::MAX];
+        let mut seed = 1_i64;
+        let mut next = || {
+            seed = seed.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
+            seed
+        };
+        let random: std::vec::Vec<i64> = (0..300).map(|k| next() >> (k % 60)).collect();
+        for a in ends.into_iter().chain(random.iter().copied()) {
+            for b in ends.into_iter().chain(random.iter().copied()).map(|b| b.clamp(-1 << 62, 1 << 62)) {
+                let exact = i128::from(a) * i128::from(b);
+                assert_eq!(product_of_halves::<62>(a, b, 0), (exact >> 62) as i64, "{a} {b}");
+                assert_eq!(product_of_halves::<48>(a, b, 1 << 15), ((exact + (1 << 47)) >> 48) as i64, "{a} {b}");
+            }
+        }
     }
 
     #[test]
