@@ -5,7 +5,7 @@
 //! (Sinha, Klassen, Wang 1985; Sederberg, Christiansen, Katz 1989). Others are halved, the longer one first. Where both are
 //! nearly flat, a search for a point with collinear normals tells what keeps them from being decided.
 
-use super::contact::{Contact, Form};
+use super::contact::Form;
 use super::newton::{Pair, Places};
 use super::part::{Part, Region};
 use crate::num::Real;
@@ -25,7 +25,7 @@ pub(super) struct Found {
     pub(super) touches: bool,
 }
 
-/// What the test left.
+/// What the test left. 1 KB.
 #[derive(Debug)]
 pub(super) struct Report {
     pub(super) contacts: [Option<Found>; CONTACTS],
@@ -36,6 +36,8 @@ pub(super) struct Report {
 }
 
 impl Report {
+    pub(super) const EMPTY: Self = Self { contacts: [None; CONTACTS], count: 0, undecided: 0, visited: 0 };
+
     pub(super) fn list(&self) -> impl Iterator<Item = &Found> {
         self.contacts.iter().flatten()
     }
@@ -51,19 +53,17 @@ impl Report {
         self.count += 1;
         true
     }
-}
 
-/// A question about what is known.
-#[derive(Debug)]
-pub(super) enum Query<'q> {
-    /// Whether a contact lies on a curve that was found; it may be followed first.
-    Contact(&'q Contact),
-    /// Whether a curve along which the surfaces touch passes within a distance of a point.
-    Near([i64; 3], Real),
+    /// Enters a contact; where the surfaces touch, one without room is counted.
+    fn keep(&mut self, found: Found) {
+        if !self.enter(found) && found.touches {
+            self.undecided = self.undecided.saturating_add(1);
+        }
+    }
 }
 
 /// What is known of a pair.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 enum Verdict {
     /// Apart, or without closed curves.
     Decided,
@@ -71,16 +71,102 @@ enum Verdict {
     Open,
     /// Near a tangency that is known.
     Explained,
+    /// The surfaces touch here: explained if this lies on a curve that is known.
+    Asks(Found),
 }
 
-struct Search<'s, 'a, F> {
+/// The test between two questions: the pairs that are left. 0.9 KB; a part takes 3 KB, so none stays while a curve is followed.
+#[derive(Debug)]
+pub(super) struct Search<'s, 'a> {
     pair: &'s Pair<'a>,
-    known: F,
-    report: Report,
+    stack: [[Region; 2]; STACK],
+    height: usize,
+    /// The pair about which was asked, and the contact.
+    asked: Option<([Region; 2], Found)>,
 }
 
-impl<F: FnMut(Query<'_>) -> bool> Search<'_, '_, F> {
-    fn judge(&mut self, a: &mut Part, b: &mut Part, regions: [Region; 2]) -> Verdict {
+impl<'s, 'a> Search<'s, 'a> {
+    pub(super) const fn new(pair: &'s Pair<'a>) -> Self {
+        Self { pair, stack: [[Region::ROOT; 2]; STACK], height: 1, asked: None }
+    }
+
+    /// Runs until all pairs are decided, or `report.visited` has reached `budget`; or until a contact is found of which must
+    /// be known whether it lies on a known curve along which the surfaces touch: then run again, with the answer.
+    /// `is_near` tells whether such a curve passes within a distance of a point.
+    #[inline(never)]
+    pub(super) fn run(
+        &mut self,
+        report: &mut Report,
+        budget: u32,
+        answer: bool,
+        is_near: impl Fn([i64; 3], Real) -> bool,
+    ) -> Option<Places> {
+        let mut parts = [Part::BLANK; 2];
+        loop {
+            let (regions, verdict) = if let Some((regions, found)) = self.asked.take() {
+                self.load(&mut parts, regions);
+                if !answer {
+                    report.keep(found);
+                }
+                (regions, if answer { Verdict::Explained } else { Verdict::Open })
+            } else {
+                let Some(height) = self.height.checked_sub(1) else { return None };
+                let Some(regions) = self.stack.get(height).copied() else { return None };
+                self.height = height;
+                if report.visited >= budget {
+                    report.undecided = report.undecided.saturating_add(height as u32 + 1);
+                    return None;
+                }
+                report.visited += 1;
+                self.load(&mut parts, regions);
+                let [a, b] = &mut parts;
+                (regions, self.judge(report, a, b, regions, &is_near))
+            };
+            match verdict {
+                Verdict::Decided => {}
+                Verdict::Explained => report.undecided = report.undecided.saturating_add(1),
+                Verdict::Open => self.halve(report, &parts, regions),
+                Verdict::Asks(found) => {
+                    self.asked = Some((regions, found));
+                    return Some(found.at);
+                }
+            }
+        }
+    }
+
+    fn load(&self, parts: &mut [Part; 2], regions: [Region; 2]) {
+        for ((part, region), sheet) in parts.iter_mut().zip(regions).zip(&self.pair.sheets) {
+            if part.region != Some(region) {
+                part.load(sheet, region);
+            }
+        }
+    }
+
+    /// Puts the quarters of the larger part, each with the other part, on the stack.
+    fn halve(&mut self, report: &mut Report, parts: &[Part; 2], regions: [Region; 2]) {
+        let ends = regions.map(|r| r.level >= DEEPEST);
+        if ends[0] && ends[1] {
+            report.undecided = report.undecided.saturating_add(1);
+            return;
+        }
+        let split = usize::from(ends[0] || (!ends[1] && parts[1].size() > parts[0].size()));
+        for quarter in regions[split].quarters(self.pair.sheets[split].triangle) {
+            if let Some(place) = self.stack.get_mut(self.height) {
+                *place = regions;
+                place[split] = quarter;
+                self.height += 1;
+            }
+        }
+    }
+
+    fn judge(
+        &self,
+        report: &mut Report,
+        a: &mut Part,
+        b: &mut Part,
+        regions: [Region; 2],
+        is_near: &impl Fn([i64; 3], Real) -> bool,
+    ) -> Verdict {
         let [over_a, over_b] = regions;
         if !a.boxes_meet(b) {
             return Verdict::Decided;
@@ -101,101 +187,54 @@ impl<F: FnMut(Query<'_>) -> bool> Search<'_, '_, F> {
         let level = over_a.level.min(over_b.level);
         if level >= 4 {
             let near = |f: &Found| f.touches && over_a.holds(f.at[0], 0) && over_b.holds(f.at[1], 0);
-            if self.report.list().any(near) {
+            if report.list().any(near) {
                 return Verdict::Explained;
             }
         }
         if level >= 6 {
-            let centre = self.pair.sheets[0].eval(over_a.centre(self.pair.sheets[0].triangle), 0);
             let reach = a.extent().max(b.extent()).shl(1);
-            if centre.is_some_and(|jet| (self.known)(Query::Near(jet.point, reach))) {
+            if self.centre(over_a).is_some_and(|point| is_near(point, reach)) {
                 return Verdict::Explained;
             }
         }
         let flat = Real::new(7, -4);
-        if a.cone.sine < flat && b.cone.sine < flat && self.search(a, b, regions) {
-            return Verdict::Explained;
+        if a.cone.sine < flat && b.cone.sine < flat {
+            return self.search(report, a.extent().min(b.extent()), regions);
         }
         Verdict::Open
     }
 
-    /// Looks for a point with collinear normals near a pair; true if it lies on a curve that is known.
-    fn search(&mut self, a: &Part, b: &Part, [over_a, over_b]: [Region; 2]) -> bool {
+    /// The point of A in the middle of a region.
+    #[inline(never)]
+    fn centre(&self, over_a: Region) -> Option<[i64; 3]> {
+        let sheet = &self.pair.sheets[0];
+        Some(sheet.eval(over_a.centre(sheet.triangle), 0)?.point)
+    }
+
+    /// Looks for a point with collinear normals near a pair of parts of this size.
+    #[inline(never)]
+    fn search(&self, report: &mut Report, size: Real, [over_a, over_b]: [Region; 2]) -> Verdict {
         let known = |f: &Found| over_a.holds(f.at[0], 1) && over_b.holds(f.at[1], 1);
-        if self.report.list().any(known) {
-            return false;
+        if report.list().any(known) {
+            return Verdict::Open;
         }
         let mut at = [over_a.centre(self.pair.sheets[0].triangle), over_b.centre(self.pair.sheets[1].triangle)];
-        let size = a.extent().min(b.extent());
         // B's foot under A's centre, before anything is judged.
-        let centre = self.pair.sheets[0].eval(at[0], 0);
-        if let Some((foot, _)) = centre.and_then(|jet| self.pair.foot(1, at[1], jet.point)) {
-            at[1] = foot;
+        if let Some(place) = self.centre(over_a).and_then(|point| self.pair.foot_place(1, at[1], point)) {
+            at[1] = place;
         }
-        let Some(contact) = self.pair.critical(at, size.shl(1)) else { return false };
+        let Some(contact) = self.pair.critical(at, size.shl(1)) else { return Verdict::Open };
         let near = over_a.holds(contact.at[0], 1) && over_b.holds(contact.at[1], 1);
-        if !near {
-            return false;
+        if !near || !self.pair.inside(contact.at, 1 << 20) {
+            return Verdict::Open;
         }
         let touches = contact.apart.norm() <= self.pair.touching();
-        let inside = self.pair.inside(contact.at, 1 << 20);
-        if touches && inside && (self.known)(Query::Contact(&contact)) {
-            return true;
-        }
-        if !inside {
-            return false;
+        let found = Found { at: contact.at, form: contact.form(), touches };
+        if touches {
+            return Verdict::Asks(found);
         }
         // Those at a distance are hints where small curves may be; the pair itself is halved on.
-        if !self.report.enter(Found { at: contact.at, form: contact.form(), touches }) && touches {
-            self.report.undecided = self.report.undecided.saturating_add(1);
-        }
-        false
+        report.keep(found);
+        Verdict::Open
     }
-}
-
-/// Runs the test on at most `budget` pairs; `known` answers what is known of tangencies.
-#[inline(never)]
-pub(super) fn test(pair: &Pair<'_>, budget: u32, known: impl FnMut(Query<'_>) -> bool) -> Report {
-    let report = Report { contacts: [None; CONTACTS], count: 0, undecided: 0, visited: 0 };
-    let mut search = Search { pair, known, report };
-    let mut stack = [[Region::ROOT; 2]; STACK];
-    let mut height = 1;
-    let mut parts = [Part::BLANK; 2];
-    while height > 0 {
-        height -= 1;
-        let Some(regions) = stack.get(height).copied() else { break };
-        if search.report.visited >= budget {
-            search.report.undecided = search.report.undecided.saturating_add(height as u32 + 1);
-            break;
-        }
-        search.report.visited += 1;
-        for ((part, region), sheet) in parts.iter_mut().zip(regions).zip(&pair.sheets) {
-            if part.region != Some(region) {
-                part.load(sheet, region);
-            }
-        }
-        let [a, b] = &mut parts;
-        match search.judge(a, b, regions) {
-            Verdict::Decided => continue,
-            Verdict::Explained => {
-                search.report.undecided = search.report.undecided.saturating_add(1);
-                continue;
-            }
-            Verdict::Open => {}
-        }
-        let ends = regions.map(|r| r.level >= DEEPEST);
-        if ends[0] && ends[1] {
-            search.report.undecided = search.report.undecided.saturating_add(1);
-            continue;
-        }
-        let split = usize::from(ends[0] || (!ends[1] && parts[1].size() > parts[0].size()));
-        for quarter in regions[split].quarters(pair.sheets[split].triangle) {
-            if let Some(place) = stack.get_mut(height) {
-                *place = regions;
-                place[split] = quarter;
-                height += 1;
-            }
-        }
-    }
-    search.report
 }

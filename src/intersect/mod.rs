@@ -112,6 +112,7 @@ pub use probe::{Projection, curve_points, project};
 
 use crate::num::{Coord, Real};
 use crate::patch::SurfaceNet;
+use certify::Report;
 use chain::{Chains, Signature};
 use grid::{Grid, box_count, vertex_count};
 use key::Crossing;
@@ -413,14 +414,15 @@ fn in_order<'b>(
 
     // A region of coincidence is a contact everywhere.
     let tested = options.certificate_pairs > 0 && !edges.overlap;
-    let report = if tested { Some(solver.contacts(options.certificate_pairs)?) } else { None };
+    let mut report = Report::EMPTY;
+    if tested {
+        solver.contacts(options.certificate_pairs, &mut report)?;
+    }
     solver.arms()?;
     solver.borders(grids, &mut chains)?;
     solver.chains(grids, &mut chains)?;
-    if let Some(report) = &report {
-        solver.around(report)?;
-        solver.leftovers(report)?;
-    }
+    solver.around(&report)?;
+    solver.leftovers(&report)?;
     let undecided = solver.undecided.max(u32::from(edges.overlap));
     let Output { points, used, curves, curve_count, branches, branch_count, .. } = solver.out;
     if exchanged {

@@ -79,8 +79,12 @@ pub(super) fn shifted(place: Place, by: [Real; 2]) -> Place {
 }
 
 impl<'a> Pair<'a> {
+    #[inline(always)]
     pub(super) fn new([a, b]: [SurfaceNet<'a>; 2]) -> Self {
-        let mut pair = Self { sheets: [Sheet::new(a), Sheet::new(b)], accept: Real::ZERO, extent: Real::ZERO };
+        let mut pair = Self { sheets: [Sheet::bare(a), Sheet::bare(b)], accept: Real::ZERO, extent: Real::ZERO };
+        // In place: a copy would double the largest frame of all.
+        pair.sheets[0].load();
+        pair.sheets[1].load();
         pair.extent = pair.sheets[0].extent.max(pair.sheets[1].extent);
         pair.accept = Real::power(-36).max(pair.extent.shl(-46));
         pair
@@ -88,10 +92,20 @@ impl<'a> Pair<'a> {
 
     /// Jets at places, up to an order of derivatives.
     pub(super) fn jets(&self, at: Places, order: u32) -> Option<[Jet; 2]> {
-        Some([self.sheets[0].eval(at[0], order)?, self.sheets[1].eval(at[1], order)?])
+        let mut jets = [Jet::BLANK; 2];
+        self.jets_to(at, order, &mut jets)?;
+        Some(jets)
+    }
+
+    /// The same in place.
+    #[inline]
+    pub(super) fn jets_to(&self, at: Places, order: u32, [a, b]: &mut [Jet; 2]) -> Option<()> {
+        self.sheets[0].eval_to(at[0], order, a)?;
+        self.sheets[1].eval_to(at[1], order, b)
     }
 
     /// The spot at a place whose jets are known.
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
     pub(super) fn spot(&self, at: Places, jets: &[Jet; 2]) -> Spot {
         let normals = [jets[0].normal(), jets[1].normal()];
         let product = normals[0].cross(normals[1]);
@@ -108,8 +122,9 @@ impl<'a> Pair<'a> {
     #[inline(never)]
     pub(super) fn in_plane(&self, mut at: Places, c: [i64; 3], plane: V3) -> Option<Spot> {
         let near = self.extent.shl(-20);
+        let mut jets = [Jet::BLANK; 2];
         for round in 0..LIMIT {
-            let jets = self.jets(at, 1)?;
+            self.jets_to(at, 1, &mut jets)?;
             let r = difference(jets[1].point, jets[0].point);
             let off = plane.dot(difference(c, jets[0].point));
             let square = r.square();
@@ -131,10 +146,16 @@ impl<'a> Pair<'a> {
 
     /// The point of both surfaces nearest to the line of intersection from `at`: the plane moves along.
     pub(super) fn nearest(&self, at: Places) -> Option<Spot> {
+        let (c, tangent) = self.line(at)?;
+        self.in_plane(at, c, tangent)
+    }
+
+    /// The middle of two places' points, and the direction across both normals.
+    #[inline(never)]
+    fn line(&self, at: Places) -> Option<([i64; 3], V3)> {
         let jets = self.jets(at, 1)?;
         let tangent = jets[0].normal().cross(jets[1].normal());
-        let c = middle(jets[0].point, jets[1].point);
-        self.in_plane(at, c, tangent.unit())
+        Some((middle(jets[0].point, jets[1].point), tangent.unit()))
     }
 
     /// The point where an edge of one patch meets the other, near `at`; the edge's parameter and the other's two move.
@@ -143,8 +164,9 @@ impl<'a> Pair<'a> {
         let (one, other) = (side & 1, 1 - (side & 1));
         let (sheet, direction) = (&self.sheets[one], self.sheets[one].edge_direction(edge));
         at[one] = sheet.edge_place(edge, sheet.edge_parameter(edge, at[one]));
+        let mut jets = [Jet::BLANK; 2];
         for round in 0..LIMIT {
-            let jets = self.jets(at, 1)?;
+            self.jets_to(at, 1, &mut jets)?;
             let r = difference(jets[other].point, jets[one].point);
             if round > 0 && r.square() <= self.accept.square() {
                 return Some(self.spot(at, &jets));
@@ -165,19 +187,35 @@ impl<'a> Pair<'a> {
     }
 
     /// The foot on a surface of a point near it, from a place; by Gauss's method, without second derivatives.
-    pub(super) fn foot(&self, side: usize, mut place: Place, c: [i64; 3]) -> Option<(Place, Jet)> {
+    pub(super) fn foot(&self, side: usize, place: Place, c: [i64; 3]) -> Option<(Place, Jet)> {
+        let mut jet = Jet::BLANK;
+        let place = self.foot_to(side, place, c, &mut jet)?;
+        Some((place, jet))
+    }
+
+    /// The foot's place alone.
+    #[inline(never)]
+    pub(super) fn foot_place(&self, side: usize, place: Place, c: [i64; 3]) -> Option<Place> {
+        let mut jet = Jet::BLANK;
+        self.foot_to(side, place, c, &mut jet)
+    }
+
+    /// The same with the jet in place.
+    #[inline(never)]
+    pub(super) fn foot_to(&self, side: usize, mut place: Place, c: [i64; 3], jet: &mut Jet) -> Option<Place> {
         let sheet = &self.sheets[side & 1];
         for _ in 0..LIMIT {
-            let jet = sheet.eval(place, 1)?;
+            sheet.eval_to(place, 1, jet)?;
             let step = pull_back(&jet.first, jet.normal(), difference(c, jet.point));
             let next = shifted(place, step);
             let size = both!(|k| (next[k] - place[k]).abs());
             if size[0].max(size[1]) <= 2 {
-                return Some((place, jet));
+                return Some(place);
             }
             place = next;
         }
-        Some((place, sheet.eval(place, 1)?))
+        sheet.eval_to(place, 1, jet)?;
+        Some(place)
     }
 
     /// Whether a place lies in a patch's domain, up to `slack` units of 2^-48.
