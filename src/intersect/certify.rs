@@ -8,6 +8,7 @@
 use super::contact::Form;
 use super::newton::{Pair, Places};
 use super::part::{Part, Region};
+use super::sheet::in_rooms;
 use crate::num::Real;
 
 /// Halvings of a part at most.
@@ -75,7 +76,8 @@ enum Verdict {
     Asks(Found),
 }
 
-/// The test between two questions: the pairs that are left. 0.9 KB; a part takes 3 KB, so none stays while a curve is followed.
+/// The test between two questions: the pairs that are left. 0.9 KB; parts
+/// take up to 5.2 KB more, so they do not stay while a curve is followed.
 #[derive(Debug)]
 pub(super) struct Search<'s, 'a> {
     pair: &'s Pair<'a>,
@@ -93,7 +95,6 @@ impl<'s, 'a> Search<'s, 'a> {
     /// Runs until all pairs are decided, or `report.visited` has reached `budget`; or until a contact is found of which must
     /// be known whether it lies on a known curve along which the surfaces touch: then run again, with the answer.
     /// `is_near` tells whether such a curve passes within a distance of a point.
-    #[inline(never)]
     pub(super) fn run(
         &mut self,
         report: &mut Report,
@@ -101,7 +102,19 @@ impl<'s, 'a> Search<'s, 'a> {
         answer: bool,
         is_near: impl Fn([i64; 3], Real) -> bool,
     ) -> Option<Places> {
-        let mut parts = [Part::BLANK; 2];
+        let points = self.pair.sheets.iter().fold(0, |most, sheet| most.max(sheet.source.points().len()));
+        in_rooms(points, |rooms| self.run_with(rooms.map(Part::new), report, budget, answer, is_near))
+    }
+
+    #[inline(never)]
+    fn run_with(
+        &mut self,
+        mut parts: [Part<'_>; 2],
+        report: &mut Report,
+        budget: u32,
+        answer: bool,
+        is_near: impl Fn([i64; 3], Real) -> bool,
+    ) -> Option<Places> {
         loop {
             let (regions, verdict) = if let Some((regions, found)) = self.asked.take() {
                 self.load(&mut parts, regions);
@@ -134,7 +147,7 @@ impl<'s, 'a> Search<'s, 'a> {
         }
     }
 
-    fn load(&self, parts: &mut [Part; 2], regions: [Region; 2]) {
+    fn load(&self, parts: &mut [Part<'_>; 2], regions: [Region; 2]) {
         for ((part, region), sheet) in parts.iter_mut().zip(regions).zip(&self.pair.sheets) {
             if part.region != Some(region) {
                 part.load(sheet, region);
@@ -143,7 +156,7 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 
     /// Puts the quarters of the larger part, each with the other part, on the stack.
-    fn halve(&mut self, report: &mut Report, parts: &[Part; 2], regions: [Region; 2]) {
+    fn halve(&mut self, report: &mut Report, parts: &[Part<'_>; 2], regions: [Region; 2]) {
         let ends = regions.map(|r| r.level >= DEEPEST);
         if ends[0] && ends[1] {
             report.undecided = report.undecided.saturating_add(1);
@@ -162,8 +175,8 @@ impl<'s, 'a> Search<'s, 'a> {
     fn judge(
         &self,
         report: &mut Report,
-        a: &mut Part,
-        b: &mut Part,
+        a: &mut Part<'_>,
+        b: &mut Part<'_>,
         regions: [Region; 2],
         is_near: &impl Fn([i64; 3], Real) -> bool,
     ) -> Verdict {

@@ -80,6 +80,7 @@ fn are_equal(a: &Sheet<'_>, edge_a: usize, b: &Sheet<'_>, edge_b: usize, reverse
 impl Pair<'_> {
     /// Where the search for the foot of a point on a patch begins: the nearest vertex of a coarse grid, if one is as near
     /// as it must be for a point on the patch.
+    #[inline(never)]
     pub(super) fn coarse_foot(&self, side: usize, grid: &Grid<'_>, point: [i64; 3]) -> (Place, i64) {
         let stride = grid.depth.saturating_sub(COARSE);
         let n = 1_usize << (grid.depth - stride);
@@ -103,6 +104,7 @@ impl Pair<'_> {
     }
 
     /// The spot of an edge's parameter if it lies on the other patch, up to `slack` of its domain.
+    #[inline(never)]
     fn on_surface(&self, side: usize, edge: usize, parameter: i64, near: Place, slack: i64) -> Option<Spot> {
         let spot = self.edge_spot(side, edge, parameter, near)?;
         let on =
@@ -188,6 +190,7 @@ pub(super) fn find(
 }
 
 /// Adds the parts of one edge.
+#[inline(never)]
 fn collect(pair: &Pair<'_>, grids: [&Grid<'_>; 2], sizes: [i64; 2], (side, edge): (usize, usize), parts: &mut Parts) {
     let other = 1 - side;
     let sheet = &pair.sheets[side & 1];
@@ -268,6 +271,7 @@ fn collect(pair: &Pair<'_>, grids: [&Grid<'_>; 2], sizes: [i64; 2], (side, edge)
 }
 
 /// The last spot on the surface between a parameter on it and one that is not.
+#[inline(never)]
 fn last_on(pair: &Pair<'_>, (side, edge): (usize, usize), on: Spot, mut low: i64, mut high: i64) -> Spot {
     let mut last = on;
     for _ in 0..48 {
@@ -285,6 +289,7 @@ fn last_on(pair: &Pair<'_>, (side, edge): (usize, usize), on: Spot, mut low: i64
 
 impl Pair<'_> {
     /// The spot of a shared edge, whose place on the other patch is known.
+    #[inline(never)]
     fn shared_spot(&self, side: usize, edge: usize, parameter: i64, place: Place) -> Option<Spot> {
         let own = self.sheets[side & 1].edge_place(edge, parameter);
         let at = if side == 0 { [own, place] } else { [place, own] };
@@ -298,6 +303,7 @@ impl Pair<'_> {
 }
 
 /// Emits a part after its first point, or after its last one, backwards.
+#[inline(never)]
 fn run(
     pair: &Pair<'_>,
     tolerance: Real,
@@ -328,6 +334,7 @@ fn run(
 }
 
 /// Joins tangential parts that close to the border of a region where the surfaces coincide.
+#[inline(never)]
 fn regions(pair: &Pair<'_>, tolerance: Real, parts: &mut Parts, out: &mut Output<'_>) -> Result<bool, IntersectError> {
     let near = |a: &Spot, b: &Spot| difference(a.point, b.point).norm() <= pair.extent.shl(-24);
     let mut any = false;
@@ -384,6 +391,7 @@ fn regions(pair: &Pair<'_>, tolerance: Real, parts: &mut Parts, out: &mut Output
 }
 
 /// A part that ends 2^-34 of an edge early, so that a corner has a point for either of its tangents.
+#[inline(never)]
 fn shortened(pair: &Pair<'_>, part: &OnSurface, backwards: bool) -> OnSurface {
     let sheet = &pair.sheets[part.side & 1];
     let last = usize::from(!backwards);
@@ -397,6 +405,7 @@ fn shortened(pair: &Pair<'_>, part: &OnSurface, backwards: bool) -> OnSurface {
 }
 
 /// Whether points amid a closed border lie on both surfaces.
+#[inline(never)]
 fn encloses(pair: &Pair<'_>, border: &[CurvePoint]) -> bool {
     let share = Real::ONE / Real::int(border.len().max(1) as i64);
     let mut sums = [Real::ZERO; 4];
@@ -423,6 +432,7 @@ fn encloses(pair: &Pair<'_>, border: &[CurvePoint]) -> bool {
 
 impl Output<'_> {
     /// Ends the curve whose points begin at `first`: measures it and enters it in the list.
+    #[inline(never)]
     pub(super) fn finish(
         &mut self,
         kind: CurveKind,

@@ -6,12 +6,11 @@
 //! angle whose sine is at most that over sin γ (after Sederberg and Meyers 1988). A rational part has the derivatives
 //! (A' − S w')/w; moved to its centre, |S| is at most its radius, which widens the cone.
 
-use super::sheet::{Homogeneous, ONE, PARAMETER_BITS, Place, Sheet, between};
+use super::sheet::{Homogeneous, ONE, PARAMETER_BITS, Place, ROOM, Sheet, between};
 use super::vector::V3;
 use crate::num::Real;
 use crate::patch::{MAX_DEGREE, triangle_index, triangle_len};
 
-const ROOM: usize = (MAX_DEGREE + 1) * (MAX_DEGREE + 1);
 /// Fraction bits of a hull.
 const HULL_BITS: i32 = 26;
 /// What a hull's coordinates may be wrong by, in its units, twice and rounded up.
@@ -73,15 +72,15 @@ impl Region {
     }
 }
 
-/// A part of a patch. 2.8 KB.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
+/// A part of a patch.
+#[derive(Debug)]
+pub(super) struct Part<'r> {
     pub(super) region: Option<Region>,
     triangle: bool,
     degrees: (usize, usize),
     count: usize,
     /// Points, with weights relative to the largest, 24 fraction bits; all alike for polynomial parts.
-    hull: [Homogeneous; ROOM],
+    hull: &'r mut [Homogeneous],
     low: [i64; 3],
     high: [i64; 3],
     pub(super) cone: Cone,
@@ -131,7 +130,7 @@ fn advance(values: &mut Line, i: usize, t: i64) {
 type Line = [Homogeneous; MAX_DEGREE + 1];
 
 /// The points of a net that begin at `start`, `step` apart.
-fn line(net: &[Homogeneous; ROOM], (start, step): (usize, usize)) -> Line {
+fn line(net: &[Homogeneous], (start, step): (usize, usize)) -> Line {
     let mut line = [[0; 4]; MAX_DEGREE + 1];
     for (value, point) in line.iter_mut().zip(net.iter().skip(start).step_by(step)) {
         *value = *point;
@@ -142,13 +141,7 @@ fn line(net: &[Homogeneous; ROOM], (start, step): (usize, usize)) -> Line {
 /// Writes the control points of the part low ..= high of a curve of degree `n` into a net, from `start`, `step` apart: the
 /// blossom at low^(n−k) high^k. The curve's own points are used up.
 #[inline(never)]
-fn split(
-    line: &mut Line,
-    n: usize,
-    [low, high]: [i64; 2],
-    net: &mut [Homogeneous; ROOM],
-    (start, step): (usize, usize),
-) {
+fn split(line: &mut Line, n: usize, [low, high]: [i64; 2], net: &mut [Homogeneous], (start, step): (usize, usize)) {
     // `line` holds the values after n − k steps at `low`; k steps at `high` remain.
     for k in (0..=n.min(MAX_DEGREE)).rev() {
         let mut rest = *line;
@@ -167,7 +160,7 @@ fn split(
 }
 
 /// The blossom of a triangular net: `counts` steps at each of the corners.
-fn triangle_blossom(net: &[Homogeneous; ROOM], n: usize, corners: &[Place; 3], counts: [usize; 3]) -> Homogeneous {
+fn triangle_blossom(net: &[Homogeneous], n: usize, corners: &[Place; 3], counts: [usize; 3]) -> Homogeneous {
     let mut values = [[0; 4]; triangle_len(MAX_DEGREE)];
     for (out, value) in values.iter_mut().zip(net).take(triangle_len(n)) {
         *out = *value;
@@ -196,19 +189,21 @@ fn triangle_blossom(net: &[Homogeneous; ROOM], n: usize, corners: &[Place; 3], c
     values[0]
 }
 
-impl Part {
-    /// No part.
-    pub(super) const BLANK: Self = Self {
-        region: None,
-        triangle: false,
-        degrees: (1, 1),
-        count: 0,
-        hull: [[0; 4]; ROOM],
-        low: [0; 3],
-        high: [0; 3],
-        cone: Cone::UNKNOWN,
-        is_aimed: false,
-    };
+impl<'r> Part<'r> {
+    /// No part; its hull in a room of as many points as the patch has, or more.
+    pub(super) fn new(room: &'r mut [Homogeneous]) -> Self {
+        Self {
+            region: None,
+            triangle: false,
+            degrees: (1, 1),
+            count: 0,
+            hull: room,
+            low: [0; 3],
+            high: [0; 3],
+            cone: Cone::UNKNOWN,
+            is_aimed: false,
+        }
+    }
 
     /// Becomes the part of a patch over a region.
     #[inline(never)]
@@ -220,7 +215,7 @@ impl Part {
             for row in 0..=m {
                 for k in 0..=row {
                     if let Some(out) = self.hull.get_mut(triangle_index(row - k, k)) {
-                        *out = triangle_blossom(&sheet.net, m, &corners, [m - row, row - k, k]);
+                        *out = triangle_blossom(sheet.net, m, &corners, [m - row, row - k, k]);
                     }
                 }
             }
@@ -228,11 +223,11 @@ impl Part {
             let ([u, v], [x, y]) = (region.place(0, 0), region.place(1, 1));
             for i in 0..=m {
                 let row = (i * (h + 1), 1);
-                split(&mut line(&sheet.net, row), h, [v, y], &mut self.hull, row);
+                split(&mut line(sheet.net, row), h, [v, y], self.hull, row);
             }
             for j in 0..=h {
                 let column = (j, h + 1);
-                split(&mut line(&self.hull, column), m, [u, x], &mut self.hull, column);
+                split(&mut line(self.hull, column), m, [u, x], self.hull, column);
             }
         }
         self.region = Some(region);

@@ -16,7 +16,8 @@ pub(super) const ONE: i64 = 1 << PARAMETER_BITS;
 pub(super) const POINT_BITS: i32 = 44;
 /// Bits of the largest coordinate of a prepared net: five are left for extrapolation past the borders.
 const NET_BITS: i32 = 57;
-const ROOM: usize = (MAX_DEGREE + 1) * (MAX_DEGREE + 1);
+/// Control points of a net at most.
+pub(super) const ROOM: usize = (MAX_DEGREE + 1) * (MAX_DEGREE + 1);
 
 /// Homogeneous coordinates of a control point or of a sum of them; the weight is unused by polynomial patches.
 pub(super) type Homogeneous = [i64; 4];
@@ -46,7 +47,7 @@ impl Jet {
     }
 }
 
-/// A patch ready for evaluation. 2.6 KB.
+/// A patch ready for evaluation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sheet<'a> {
     pub(super) source: SurfaceNet<'a>,
@@ -57,7 +58,22 @@ pub(super) struct Sheet<'a> {
     pub(super) bits: i32,
     /// The longest side of the control points' box.
     pub(super) extent: Real,
-    pub(super) net: [Homogeneous; ROOM],
+    pub(super) net: &'a [Homogeneous],
+}
+
+/// Calls `work` with room for two nets of so many control points, from 512 bytes to 2.6 KB each: it is what a stack mostly holds.
+pub(super) fn in_rooms<R>(points: usize, work: impl FnOnce([&mut [Homogeneous]; 2]) -> R) -> R {
+    match points {
+        0..=16 => with_rooms::<16, R>(work),
+        17..=36 => with_rooms::<36, R>(work),
+        _ => with_rooms::<ROOM, R>(work),
+    }
+}
+
+#[inline(never)]
+fn with_rooms<const POINTS: usize, R>(work: impl FnOnce([&mut [Homogeneous]; 2]) -> R) -> R {
+    let (mut one, mut two) = ([[0; 4]; POINTS], [[0; 4]; POINTS]);
+    work([&mut one, &mut two])
 }
 
 /// A place with its value and differences of orders 1 and 2, all unscaled.
@@ -108,30 +124,9 @@ fn collapse<const D: usize>(values: &mut [Homogeneous; MAX_DEGREE + 1], n: usize
 }
 
 impl<'a> Sheet<'a> {
-    pub(super) fn new(source: SurfaceNet<'a>) -> Self {
-        let mut sheet = Self::bare(source);
-        sheet.load();
-        sheet
-    }
-
-    /// A patch that is not ready yet.
-    #[inline(always)]
-    pub(super) fn bare(source: SurfaceNet<'a>) -> Self {
-        Self {
-            source,
-            triangle: source.is_triangle(),
-            rational: source.weights().is_some(),
-            degrees: source.degrees(),
-            bits: 0,
-            extent: Real::ZERO,
-            net: [[0; 4]; ROOM],
-        }
-    }
-
-    /// Makes a patch ready.
+    /// Makes a patch ready in a room of as many points as it has, or more.
     #[inline(never)]
-    pub(super) fn load(&mut self) {
-        let source = self.source;
+    pub(super) fn new(source: SurfaceNet<'a>, room: &'a mut [Homogeneous]) -> Self {
         let bounds = source.bounds();
         let sizes = [bounds.max.x, bounds.max.y, bounds.max.z]
             .into_iter()
@@ -144,8 +139,7 @@ impl<'a> Sheet<'a> {
         let most = weights.map_or(1, |w| w.iter().fold(1, |most, w| most.max(w.to_bits())));
         let weight_bits = 32 - most.leading_zeros() as i32;
         let bits = if weights.is_some() { NET_BITS - whole } else { (NET_BITS - whole).min(POINT_BITS) };
-        (self.bits, self.extent) = (bits, Real::new(extent, -16));
-        for (i, (out, point)) in self.net.iter_mut().zip(source.points()).enumerate() {
+        for (i, (out, point)) in room.iter_mut().zip(source.points()).enumerate() {
             let coordinates = point.to_array().map(I16F16::bits);
             match weights {
                 None => {
@@ -161,6 +155,15 @@ impl<'a> Sheet<'a> {
                     out[3] = shifted(weight, bits - weight_bits);
                 }
             }
+        }
+        Self {
+            source,
+            triangle: source.is_triangle(),
+            rational: weights.is_some(),
+            degrees: source.degrees(),
+            bits,
+            extent: Real::new(extent, -16),
+            net: room,
         }
     }
 
