@@ -5,7 +5,7 @@
 //! (Sinha, Klassen, Wang 1985; Sederberg, Christiansen, Katz 1989). Others are halved, the longer one first. Where both are
 //! nearly flat, a search for a point with collinear normals tells what keeps them from being decided.
 
-use super::contact::Form;
+use super::contact::{Contact, Form};
 use super::newton::{Pair, Places};
 use super::part::{Part, Region};
 use super::sheet::in_rooms;
@@ -88,6 +88,7 @@ pub(super) struct Search<'s, 'a> {
 }
 
 impl<'s, 'a> Search<'s, 'a> {
+    #[inline(always)]
     pub(super) const fn new(pair: &'s Pair<'a>) -> Self {
         Self { pair, stack: [[Region::ROOT; 2]; STACK], height: 1, asked: None }
     }
@@ -236,7 +237,10 @@ impl<'s, 'a> Search<'s, 'a> {
         if let Some(place) = self.centre(over_a).and_then(|point| self.pair.foot_place(1, at[1], point)) {
             at[1] = place;
         }
-        let Some(contact) = self.pair.critical(at, size.shl(1)) else { return Verdict::Open };
+        let mut contact = Contact::BLANK;
+        if self.pair.critical(&mut contact, at, size.shl(1)).is_none() {
+            return Verdict::Open;
+        }
         let near = over_a.holds(contact.at[0], 1) && over_b.holds(contact.at[1], 1);
         if !near || !self.pair.inside(contact.at, 1 << 20) {
             return Verdict::Open;

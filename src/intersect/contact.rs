@@ -186,17 +186,15 @@ impl Contact {
 }
 
 impl Pair<'_> {
-    /// The critical point near a place, no farther than `within` from where the search begins.
+    /// Moves a contact to the critical point near a place, no farther than `within` from there.
     #[inline(never)]
-    pub(super) fn critical(&self, at: Places, within: Real) -> Option<Contact> {
-        let mut contact = Contact::BLANK;
+    pub(super) fn critical(&self, contact: &mut Contact, at: Places, within: Real) -> Option<()> {
         contact.move_to(self, at)?;
         let mut travelled = Real::ZERO;
         for _ in 0..LIMIT {
             let reach = contact.reach();
             if reach <= self.extent.shl(-30) {
-                contact.move_to(self, contact.stepped(contact.steps))?;
-                return Some(contact);
+                return contact.move_to(self, contact.stepped(contact.steps));
             }
             travelled = travelled + reach;
             if travelled > within {

@@ -196,7 +196,8 @@ pub fn curve_points(
     }
     let count = 2 * curve.points().len();
     let ruled = TensorNet::of_checked((curve.degree(), 1), points.get(..count).unwrap_or(&points));
-    let (mut one, mut two) = ([[0; 4]; ROOM], [[0; 4]; ROOM]);
+    let mut one = [[0; 4]; ROOM];
+    let mut two = [[0; 4]; ROOM];
     let pair = Pair::new([SurfaceNet::Tensor(ruled), net], [&mut one, &mut two]);
     let steps = 1_i64 << depth;
     let mut used = 0;

@@ -72,7 +72,8 @@ pub(super) fn in_rooms<R>(points: usize, work: impl FnOnce([&mut [Homogeneous]; 
 
 #[inline(never)]
 fn with_rooms<const POINTS: usize, R>(work: impl FnOnce([&mut [Homogeneous]; 2]) -> R) -> R {
-    let (mut one, mut two) = ([[0; 4]; POINTS], [[0; 4]; POINTS]);
+    let mut one = [[0; 4]; POINTS];
+    let mut two = [[0; 4]; POINTS];
     work([&mut one, &mut two])
 }
 

@@ -5,7 +5,7 @@
 //!
 //! On targets of 32 bits an operation is a call: in place it would be 60 to 400 bytes of code, some thousand times.
 
-use super::round::product_down;
+use super::round::{long_quotient, product_down};
 use core::cmp::Ordering;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -108,11 +108,10 @@ impl Real {
         if self.mantissa <= 0 {
             return Self::ZERO;
         }
-        // What is left of the exponent is even; the value has 122 to 124 bits.
+        // What is left of the exponent is even; the value, mantissa · 2^shift, has 122 to 124 bits.
         let odd = self.exponent & 1;
-        let value = (self.mantissa as u128) << (60 + odd);
         let exponent = self.exponent - 60 - odd;
-        Self::new(root(value) as i64, exponent >> 1)
+        Self::new(root(self.mantissa.unsigned_abs(), 60 + odd as u32) as i64, exponent >> 1)
     }
 
     pub(crate) fn min(self, other: Self) -> Self {
@@ -130,13 +129,12 @@ impl Real {
     }
 }
 
-/// The root of a number of 122 to 124 bits, to the last bit or two: the 32 upper bits by the root of 64 bits, the rest
-/// by a step of Newton's method.
-fn root(value: u128) -> u64 {
-    let first = ((value >> 62) as u64).isqrt();
-    let guess = u128::from(first) << 31;
-    let quotient = value.checked_div(guess).unwrap_or(0);
-    ((guess + quotient) >> 1) as u64
+/// The root of `value` · 2^`shift`, a number of 122 to 124 bits, to the last bit or two: the 32 upper bits by the root of
+/// 64 bits, the rest by a step of Newton's method.
+fn root(value: u64, shift: u32) -> u64 {
+    let first = (value >> (62 - shift)).isqrt();
+    let guess = first << 31;
+    (guess + long_quotient(value, guess, shift)) >> 1
 }
 
 impl Neg for Real {
@@ -195,8 +193,12 @@ impl Div for Real {
     #[cfg_attr(target_pointer_width = "32", inline(never))]
     #[cfg_attr(not(target_pointer_width = "32"), inline)]
     fn div(self, other: Self) -> Self {
-        let quotient = (i128::from(self.mantissa) << 61).checked_div(i128::from(other.mantissa)).unwrap_or(0);
-        Self::new(quotient as i64, self.exponent - other.exponent - 61)
+        if other.mantissa == 0 {
+            return Self::ZERO;
+        }
+        let size = long_quotient(self.mantissa.unsigned_abs(), other.mantissa.unsigned_abs(), 61) as i64;
+        let quotient = if (self.mantissa ^ other.mantissa) < 0 { -size } else { size };
+        Self::new(quotient, self.exponent - other.exponent - 61)
     }
 }
 
