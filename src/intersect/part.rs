@@ -6,7 +6,7 @@
 //! angle whose sine is at most that over sin γ (after Sederberg and Meyers 1988). A rational part has the derivatives
 //! (A' − S w')/w; moved to its centre, |S| is at most its radius, which widens the cone.
 
-use super::sheet::{Homogeneous, ONE, PARAMETER_BITS, Place, ROOM, Sheet, between};
+use super::sheet::{Homogeneous, ONE, PARAMETER_BITS, Place, ROOM, Sheet, between, combine};
 use super::vector::V3;
 use crate::num::Real;
 use crate::patch::{MAX_DEGREE, triangle_index, triangle_len};
@@ -167,18 +167,14 @@ fn triangle_blossom(net: &[Homogeneous], n: usize, corners: &[Place; 3], counts:
     }
     let mut degree = n;
     for (corner, count) in corners.iter().zip(counts) {
-        let weights = [corner[0], corner[1], ONE - corner[0] - corner[1]];
         for _ in 0..count {
             degree = degree.saturating_sub(1);
             for row in 0..=degree {
                 for k in 0..=row {
                     let at = triangle_index(row - k, k);
                     let parents = [at, at + row + 1, at + row + 2].map(|p| values.get(p).copied().unwrap_or([0; 4]));
-                    let mut sum = [0; 4];
-                    for (c, sum) in sum.iter_mut().enumerate() {
-                        let total = (0..3).fold(0, |s, p| s + i128::from(parents[p][c]) * i128::from(weights[p]));
-                        *sum = ((total + (1 << (PARAMETER_BITS - 1))) >> PARAMETER_BITS) as i64;
-                    }
+                    let [u, v, w] = &parents;
+                    let sum = combine::<4>([u, v, w], *corner);
                     if let Some(value) = values.get_mut(at) {
                         *value = sum;
                     }

@@ -4,7 +4,7 @@
 //! point of degrees (m, h) is within (m + h) / 2 units of the net's own scale, 2^-44 or 2^-42 for polynomial patches.
 
 use super::vector::V3;
-use crate::num::{Coord, I16F16, Real, product_half_up};
+use crate::num::{Coord, I16F16, Real, product_half_up, products_half_up};
 use crate::patch::{MAX_DEGREE, SurfaceNet, triangle_index, triangle_len};
 
 /// Fraction bits of parameters.
@@ -328,13 +328,12 @@ fn shifted(value: i64, shift: i32) -> i64 {
 /// The sum of points weighted by u, v, w, which sum to 1, rounded half up.
 #[cfg_attr(target_pointer_width = "32", inline(never))]
 #[cfg_attr(not(target_pointer_width = "32"), inline(always))]
-fn combine<const D: usize>(points: [&Homogeneous; 3], [u, v]: Place) -> Homogeneous {
+pub(super) fn combine<const D: usize>(points: [&Homogeneous; 3], place: Place) -> Homogeneous {
     let [a, b, c] = points;
     let mut out = [0; 4];
     for k in 0..D {
         let along = [a[k].wrapping_sub(c[k]), b[k].wrapping_sub(c[k])];
-        let sum = i128::from(along[0]) * i128::from(u) + i128::from(along[1]) * i128::from(v);
-        out[k] = c[k].wrapping_add(((sum + (1 << (PARAMETER_BITS - 1))) >> PARAMETER_BITS) as i64);
+        out[k] = c[k].wrapping_add(products_half_up::<PARAMETER>(along, place));
     }
     out
 }
