@@ -8,10 +8,13 @@
 use super::contact::{Contact, Form};
 use super::newton::{Pair, Places};
 use super::part::{Part, Region};
+use super::sheet::in_rooms;
 use crate::num::Real;
 
 /// Halvings of a part at most.
-const DEEPEST: u8 = 11;
+pub(super) const DEEPEST: u8 = 11;
+/// The same of a first pass, which looks for tangencies all over before the second goes deep anywhere.
+pub(super) const SHALLOW: u8 = 6;
 const STACK: usize = 3 * 2 * DEEPEST as usize + 2;
 /// Points with collinear normals that are kept.
 pub(super) const CONTACTS: usize = 24;
@@ -25,7 +28,7 @@ pub(super) struct Found {
     pub(super) touches: bool,
 }
 
-/// What the test left.
+/// What the test left. 1 KB.
 #[derive(Debug)]
 pub(super) struct Report {
     pub(super) contacts: [Option<Found>; CONTACTS],
@@ -36,6 +39,8 @@ pub(super) struct Report {
 }
 
 impl Report {
+    pub(super) const EMPTY: Self = Self { contacts: [None; CONTACTS], count: 0, undecided: 0, visited: 0 };
+
     pub(super) fn list(&self) -> impl Iterator<Item = &Found> {
         self.contacts.iter().flatten()
     }
@@ -55,19 +60,17 @@ impl Report {
         let hint = self.contacts.iter_mut().find(|c| found.touches && c.is_some_and(|c| !c.touches));
         hint.map(|place| *place = Some(found)).is_some()
     }
-}
 
-/// A question about what is known.
-#[derive(Debug)]
-pub(super) enum Query<'q> {
-    /// Whether a contact lies on a curve that was found; it may be followed first.
-    Contact(&'q Contact),
-    /// Whether a curve along which the surfaces touch passes within a distance of a point.
-    Near([i64; 3], Real),
+    /// Enters a contact; where the surfaces touch, one without room is counted.
+    fn keep(&mut self, found: Found) {
+        if !self.enter(found) && found.touches {
+            self.undecided = self.undecided.saturating_add(1);
+        }
+    }
 }
 
 /// What is known of a pair.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 enum Verdict {
     /// Apart, or without closed curves.
     Decided,
@@ -75,16 +78,117 @@ enum Verdict {
     Open,
     /// Near a tangency that is known.
     Explained,
+    /// The surfaces touch here: explained if this lies on a curve that is known.
+    Asks(Found),
 }
 
-struct Search<'s, 'a, F> {
+/// The test between two questions: the pairs that are left. 0.9 KB; parts
+/// take up to 5.2 KB more, so they do not stay while a curve is followed.
+#[derive(Debug)]
+pub(super) struct Search<'s, 'a> {
     pair: &'s Pair<'a>,
-    known: F,
-    report: Report,
+    stack: [[Region; 2]; STACK],
+    height: usize,
+    /// The pair about which was asked, and the contact.
+    asked: Option<([Region; 2], Found)>,
+    /// The level at which pairs are left undecided.
+    deepest: u8,
 }
 
-impl<F: FnMut(Query<'_>) -> bool> Search<'_, '_, F> {
-    fn judge(&mut self, a: &mut Part, b: &mut Part, regions: [Region; 2]) -> Verdict {
+impl<'s, 'a> Search<'s, 'a> {
+    #[inline(always)]
+    pub(super) const fn new(pair: &'s Pair<'a>, deepest: u8) -> Self {
+        Self { pair, stack: [[Region::ROOT; 2]; STACK], height: 1, asked: None, deepest }
+    }
+
+    /// Runs until all pairs are decided, or `report.visited` has reached `budget`; or until a contact is found of which must
+    /// be known whether it lies on a known curve along which the surfaces touch: then run again, with the answer.
+    /// `is_near` tells whether such a curve passes within a distance of a point.
+    pub(super) fn run(
+        &mut self,
+        report: &mut Report,
+        budget: u32,
+        answer: bool,
+        is_near: impl Fn([i64; 3], Real) -> bool,
+    ) -> Option<Places> {
+        let points = self.pair.sheets.iter().fold(0, |most, sheet| most.max(sheet.source.points().len()));
+        in_rooms(points, |rooms| self.run_with(rooms.map(Part::new), report, budget, answer, is_near))
+    }
+
+    #[inline(never)]
+    fn run_with(
+        &mut self,
+        mut parts: [Part<'_>; 2],
+        report: &mut Report,
+        budget: u32,
+        answer: bool,
+        is_near: impl Fn([i64; 3], Real) -> bool,
+    ) -> Option<Places> {
+        loop {
+            let (regions, verdict) = if let Some((regions, found)) = self.asked.take() {
+                self.load(&mut parts, regions);
+                if !answer {
+                    report.keep(found);
+                }
+                (regions, if answer { Verdict::Explained } else { Verdict::Open })
+            } else {
+                let height = self.height.checked_sub(1)?;
+                let regions = self.stack.get(height).copied()?;
+                self.height = height;
+                if report.visited >= budget {
+                    report.undecided = report.undecided.saturating_add(height as u32 + 1);
+                    return None;
+                }
+                report.visited += 1;
+                self.load(&mut parts, regions);
+                let [a, b] = &mut parts;
+                (regions, self.judge(report, a, b, regions, &is_near))
+            };
+            match verdict {
+                Verdict::Decided => {}
+                Verdict::Explained => report.undecided = report.undecided.saturating_add(1),
+                Verdict::Open => self.halve(report, &parts, regions),
+                Verdict::Asks(found) => {
+                    self.asked = Some((regions, found));
+                    return Some(found.at);
+                }
+            }
+        }
+    }
+
+    fn load(&self, parts: &mut [Part<'_>; 2], regions: [Region; 2]) {
+        for ((part, region), sheet) in parts.iter_mut().zip(regions).zip(&self.pair.sheets) {
+            if part.region != Some(region) {
+                part.load(sheet, region);
+            }
+        }
+    }
+
+    /// Puts the quarters of the larger part, each with the other part, on the stack.
+    fn halve(&mut self, report: &mut Report, parts: &[Part<'_>; 2], regions: [Region; 2]) {
+        let ends = regions.map(|r| r.level >= self.deepest);
+        if ends[0] && ends[1] {
+            report.undecided = report.undecided.saturating_add(1);
+            return;
+        }
+        let split = usize::from(ends[0] || (!ends[1] && parts[1].size() > parts[0].size()));
+        for quarter in regions[split].quarters(self.pair.sheets[split].triangle) {
+            if let Some(place) = self.stack.get_mut(self.height) {
+                *place = regions;
+                place[split] = quarter;
+                self.height += 1;
+            }
+        }
+    }
+
+    fn judge(
+        &self,
+        report: &mut Report,
+        a: &mut Part<'_>,
+        b: &mut Part<'_>,
+        regions: [Region; 2],
+        is_near: &impl Fn([i64; 3], Real) -> bool,
+    ) -> Verdict {
         let [over_a, over_b] = regions;
         if !a.boxes_meet(b) {
             return Verdict::Decided;
@@ -103,138 +207,87 @@ impl<F: FnMut(Query<'_>) -> bool> Search<'_, '_, F> {
             return Verdict::Decided;
         }
         let level = over_a.level.min(over_b.level);
-        if level >= 4 && self.touching_in(regions) > 0 {
-            self.probe(a, b, regions);
-            if self.touching_in(regions) == 1 || level >= 7 {
+        if level >= 4 && Self::touching_in(report, regions) > 0 {
+            self.probe(report, a.extent().min(b.extent()), regions);
+            if Self::touching_in(report, regions) == 1 || level >= 7 {
                 return Verdict::Explained;
             }
             return Verdict::Open;
         }
         if level >= 6 {
-            let centre = self.pair.sheets[0].eval(over_a.centre(self.pair.sheets[0].triangle), 0);
             let reach = a.extent().max(b.extent()).shl(1);
-            if centre.is_some_and(|jet| (self.known)(Query::Near(jet.point, reach))) {
+            if self.centre(over_a).is_some_and(|point| is_near(point, reach)) {
                 return Verdict::Explained;
             }
         }
         let flat = Real::new(7, -4);
-        if a.cone.sine < flat && b.cone.sine < flat && self.search(a, b, regions) {
-            return Verdict::Explained;
+        if a.cone.sine < flat && b.cone.sine < flat {
+            return self.search(report, a.extent().min(b.extent()), regions);
         }
         Verdict::Open
     }
 
-    /// Halves pairs that are not decided down to a level, while there is budget; true if none is left.
-    fn descend(&mut self, deepest: u8, budget: u32) -> bool {
-        let mut stack = [[Region::ROOT; 2]; STACK];
-        let mut height = 1;
-        let mut parts = [Part::BLANK; 2];
-        let mut left = 0_u32;
-        while height > 0 {
-            height -= 1;
-            let Some(regions) = stack.get(height).copied() else { break };
-            if self.report.visited >= budget {
-                left = left.saturating_add(height as u32 + 1);
-                break;
-            }
-            self.report.visited += 1;
-            for ((part, region), sheet) in parts.iter_mut().zip(regions).zip(&self.pair.sheets) {
-                if part.region != Some(region) {
-                    part.load(sheet, region);
-                }
-            }
-            let [a, b] = &mut parts;
-            let verdict = self.judge(a, b, regions);
-            let ends = regions.map(|r| r.level >= deepest);
-            if verdict == Verdict::Decided {
-                continue;
-            }
-            if verdict == Verdict::Explained || (ends[0] && ends[1]) {
-                left = left.saturating_add(1);
-                continue;
-            }
-            let split = usize::from(ends[0] || (!ends[1] && parts[1].size() > parts[0].size()));
-            for quarter in regions[split].quarters(self.pair.sheets[split].triangle) {
-                if let Some(place) = stack.get_mut(height) {
-                    *place = regions;
-                    place[split] = quarter;
-                    height += 1;
-                }
-            }
-        }
-        self.report.undecided = self.report.undecided.saturating_add(left);
-        left == 0
-    }
-
     /// Tangencies known in a pair.
-    fn touching_in(&self, [over_a, over_b]: [Region; 2]) -> usize {
-        self.report.list().filter(|f| f.touches && over_a.holds(f.at[0], 0) && over_b.holds(f.at[1], 0)).count()
+    fn touching_in(report: &Report, [over_a, over_b]: [Region; 2]) -> usize {
+        report.list().filter(|f| f.touches && over_a.holds(f.at[0], 0) && over_b.holds(f.at[1], 0)).count()
     }
 
     /// Looks for a second tangency in a pair with one, from the quarters of A's part.
-    fn probe(&mut self, a: &Part, b: &Part, [over_a, over_b]: [Region; 2]) {
-        let size = a.extent().min(b.extent());
-        let triangle = self.pair.sheets[0].triangle;
-        for quarter in over_a.quarters(triangle) {
-            let at = [quarter.centre(triangle), over_b.centre(self.pair.sheets[1].triangle)];
-            let Some(contact) = self.contact_near(at, size) else { continue };
-            let touches = contact.apart.norm() <= self.pair.touching();
-            let near = over_a.holds(contact.at[0], 1) && over_b.holds(contact.at[1], 1);
-            if near && touches && self.pair.inside(contact.at, 1 << 20) {
-                self.report.enter(Found { at: contact.at, form: contact.form(), touches });
+    #[inline(never)]
+    fn probe(&self, report: &mut Report, size: Real, [over_a, over_b]: [Region; 2]) {
+        let mut contact = Contact::BLANK;
+        for quarter in over_a.quarters(self.pair.sheets[0].triangle) {
+            let near = self.contact_near(&mut contact, size, [quarter, over_b]).is_some()
+                && over_a.holds(contact.at[0], 1)
+                && over_b.holds(contact.at[1], 1);
+            let form = contact.form();
+            let is_point = matches!(form, Form::Saddle | Form::Definite);
+            if near && is_point && contact.apart.norm() <= self.pair.touching() && self.pair.inside(contact.at, 1 << 20)
+            {
+                report.enter(Found { at: contact.at, form, touches: true });
             }
         }
     }
 
-    /// The point with collinear normals near a place of A, no farther than twice a size, from B's foot under it.
-    fn contact_near(&self, mut at: Places, size: Real) -> Option<Contact> {
-        let centre = self.pair.sheets[0].eval(at[0], 0);
-        if let Some((foot, _)) = centre.and_then(|jet| self.pair.foot(1, at[1], jet.point)) {
-            at[1] = foot;
+    /// The point with collinear normals near the middle of a part of A, from B's foot under it, no farther than two sizes.
+    #[inline(never)]
+    fn contact_near(&self, contact: &mut Contact, size: Real, [over_a, over_b]: [Region; 2]) -> Option<()> {
+        let mut at = [over_a.centre(self.pair.sheets[0].triangle), over_b.centre(self.pair.sheets[1].triangle)];
+        if let Some(place) = self.centre(over_a).and_then(|point| self.pair.foot_place(1, at[1], point)) {
+            at[1] = place;
         }
-        self.pair.critical(at, size.shl(1))
+        self.pair.critical(contact, at, size.shl(1))
     }
 
-    /// Looks for a point with collinear normals near a pair; true if it lies on a curve that is known.
-    fn search(&mut self, a: &Part, b: &Part, [over_a, over_b]: [Region; 2]) -> bool {
+    /// The point of A in the middle of a region.
+    #[inline(never)]
+    fn centre(&self, over_a: Region) -> Option<[i64; 3]> {
+        let sheet = &self.pair.sheets[0];
+        Some(sheet.eval(over_a.centre(sheet.triangle), 0)?.point)
+    }
+
+    /// Looks for a point with collinear normals near a pair of parts of this size.
+    #[inline(never)]
+    fn search(&self, report: &mut Report, size: Real, [over_a, over_b]: [Region; 2]) -> Verdict {
         let known = |f: &Found| over_a.holds(f.at[0], 1) && over_b.holds(f.at[1], 1);
-        if self.report.list().any(known) {
-            return false;
+        if report.list().any(known) {
+            return Verdict::Open;
         }
-        let at = [over_a.centre(self.pair.sheets[0].triangle), over_b.centre(self.pair.sheets[1].triangle)];
-        let Some(contact) = self.contact_near(at, a.extent().min(b.extent())) else { return false };
+        let mut contact = Contact::BLANK;
+        if self.contact_near(&mut contact, size, [over_a, over_b]).is_none() {
+            return Verdict::Open;
+        }
         let near = over_a.holds(contact.at[0], 1) && over_b.holds(contact.at[1], 1);
-        if !near {
-            return false;
+        if !near || !self.pair.inside(contact.at, 1 << 20) {
+            return Verdict::Open;
         }
         let touches = contact.apart.norm() <= self.pair.touching();
-        let inside = self.pair.inside(contact.at, 1 << 20);
-        if touches && inside && (self.known)(Query::Contact(&contact)) {
-            return true;
-        }
-        if !inside {
-            return false;
+        let found = Found { at: contact.at, form: contact.form(), touches };
+        if touches {
+            return Verdict::Asks(found);
         }
         // Those at a distance are hints where small curves may be; the pair itself is halved on.
-        if !self.report.enter(Found { at: contact.at, form: contact.form(), touches }) && touches {
-            self.report.undecided = self.report.undecided.saturating_add(1);
-        }
-        false
+        report.keep(found);
+        Verdict::Open
     }
-}
-
-/// Levels of the first pass, which looks for tangencies all over before the second goes deep anywhere.
-const SHALLOW: u8 = 6;
-
-/// Runs the test on at most `budget` pairs; `known` answers what is known of tangencies.
-#[inline(never)]
-pub(super) fn test(pair: &Pair<'_>, budget: u32, known: impl FnMut(Query<'_>) -> bool) -> Report {
-    let report = Report { contacts: [None; CONTACTS], count: 0, undecided: 0, visited: 0 };
-    let mut search = Search { pair, known, report };
-    let is_decided = search.descend(SHALLOW, budget / 2);
-    if !is_decided {
-        search.report.undecided = 0;
-        search.descend(DEEPEST, budget);
-    }
-    search.report
 }

@@ -6,7 +6,7 @@
 //! tangential curve. A closed curve over which normals turn less than 90 degrees goes round a critical point (Sinha,
 //! Klassen, Wang 1985), so none is missed.
 
-use super::newton::{Pair, Places, Spot, difference, pull_back, shifted};
+use super::newton::{Pair, Places, Spot, difference, middle, pull_back, shifted};
 use super::sheet::{Jet, Place};
 use super::vector::V3;
 use crate::num::Real;
@@ -52,6 +52,7 @@ const LIMIT: u32 = 24;
 type Symmetric = [Real; 3];
 
 /// The Hessian of a surface as a height along `normal` over the plane of the axes, whose slope is `slope`.
+#[cfg_attr(target_pointer_width = "32", inline(never))]
 fn hessian(jet: &Jet, normal: V3, axes: &[V3; 2], slope: V3) -> Symmetric {
     let own = jet.normal();
     let [e, f] = both!(|k| pull_back(&jet.first, own, axes[k]));
@@ -66,9 +67,32 @@ fn size([a, b, c]: Symmetric) -> Real {
 }
 
 impl Contact {
+    /// No contact.
+    pub(super) const BLANK: Self = Self {
+        at: [[0; 2]; 2],
+        jets: [Jet::BLANK; 2],
+        apart: V3::ZERO,
+        gap: Real::ZERO,
+        curvatures: [Real::ZERO; 2],
+        axes: [V3::ZERO; 2],
+        scale: Real::ZERO,
+        steps: [Real::ZERO; 2],
+        beside: V3::ZERO,
+    };
+
     /// The contact at a place; `None` where a normal vanishes or the surfaces are at right angles.
     pub(super) fn new(pair: &Pair<'_>, at: Places) -> Option<Self> {
-        let jets = pair.jets(at, 2)?;
+        let mut contact = Self::BLANK;
+        contact.move_to(pair, at)?;
+        Some(contact)
+    }
+
+    /// Becomes the contact at another place.
+    #[inline(never)]
+    fn move_to(&mut self, pair: &Pair<'_>, at: Places) -> Option<()> {
+        self.at = at;
+        pair.jets_to(at, 2, &mut self.jets)?;
+        let jets = &self.jets;
         let (own, other) = (jets[0].normal(), jets[1].normal());
         if own.is_zero() || other.is_zero() {
             return None;
@@ -108,7 +132,9 @@ impl Contact {
             let level = curvatures[k].abs() <= scale.shl(-20);
             if level { Real::ZERO } else { right.dot(axes[k]) / curvatures[k] }
         });
-        Some(Self { at, jets, apart, gap, curvatures, axes, scale, steps, beside })
+        (self.apart, self.gap, self.beside, self.scale) = (apart, gap, beside, scale);
+        (self.curvatures, self.axes, self.steps) = (curvatures, axes, steps);
+        Some(())
     }
 
     /// How far the critical point seems to be.
@@ -140,6 +166,11 @@ impl Contact {
         [x + y, x - y, -(x + y), y - x]
     }
 
+    /// The point halfway between the surfaces.
+    pub(super) fn point(&self) -> [i64; 3] {
+        middle(self.jets[0].point, self.jets[1].point)
+    }
+
     /// The contact as a spot; its tangent is the axis of the smaller curvature.
     pub(super) fn spot(&self, pair: &Pair<'_>) -> Spot {
         let mut spot = pair.spot(self.at, &self.jets);
@@ -155,28 +186,30 @@ impl Contact {
 }
 
 impl Pair<'_> {
-    /// The critical point near a place, no farther than `within` from where the search begins.
+    /// Moves a contact to the critical point near a place, no farther than `within` from there.
     #[inline(never)]
-    pub(super) fn critical(&self, at: Places, within: Real) -> Option<Contact> {
-        let mut contact = Contact::new(self, at)?;
+    pub(super) fn critical(&self, contact: &mut Contact, at: Places, within: Real) -> Option<()> {
+        contact.move_to(self, at)?;
         let mut travelled = Real::ZERO;
         for _ in 0..LIMIT {
             let reach = contact.reach();
             if reach <= self.extent.shl(-30) {
-                return Contact::new(self, contact.stepped(contact.steps));
+                return contact.move_to(self, contact.stepped(contact.steps));
             }
             travelled = travelled + reach;
             if travelled > within {
                 return None;
             }
-            contact = Contact::new(self, contact.stepped(contact.steps))?;
+            contact.move_to(self, contact.stepped(contact.steps))?;
         }
         None
     }
 
     /// The point of a tangential curve in the plane through `c` with normal `plane`, near `at`.
+    #[inline(never)]
     pub(super) fn on_ridge(&self, at: Places, c: [i64; 3], plane: V3) -> Option<Spot> {
-        let mut contact = Contact::new(self, at)?;
+        let mut contact = Contact::BLANK;
+        contact.move_to(self, at)?;
         for _ in 0..LIMIT {
             let off = plane.dot(difference(c, contact.jets[0].point));
             let across = plane.dot(contact.axes[1]);
@@ -189,7 +222,7 @@ impl Pair<'_> {
             if reach <= self.extent.shl(-34) {
                 return (contact.apart.norm() <= self.touching()).then(|| contact.spot(self));
             }
-            contact = Contact::new(self, contact.stepped([x, y]))?;
+            contact.move_to(self, contact.stepped([x, y]))?;
         }
         None
     }

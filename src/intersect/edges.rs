@@ -8,7 +8,7 @@ use super::IntersectError;
 use super::curve::{Curve, CurveKind, CurvePoint};
 use super::grid::Grid;
 use super::hermite::Piece;
-use super::newton::{Pair, Spot, difference};
+use super::newton::{Pair, Places, Spot, difference};
 use super::sheet::{ONE, Place, Sheet};
 use super::trace::{BORDER, Locus, Output, Tracer};
 use crate::geometry::Point3;
@@ -32,12 +32,21 @@ type EdgePoint = (Point3<I16F16>, i32);
 struct OnSurface {
     side: usize,
     edge: usize,
-    /// Its ends, with tangents along the rising parameter.
-    ends: [Spot; 2],
+    /// The places and points of its ends; spots would take twice as much.
+    ends: [Places; 2],
+    points: [[i64; 3]; 2],
     /// Whether tangent planes agree at the ends and in the middle.
     tangential: bool,
     shared: bool,
     used: bool,
+}
+
+impl OnSurface {
+    /// The spots of its ends, with tangents along the rising parameter.
+    fn spots(&self, pair: &Pair<'_>) -> Option<[Spot; 2]> {
+        let [a, b] = self.ends;
+        Some([pair.place_on_edge(self.side, self.edge, a)?, pair.place_on_edge(self.side, self.edge, b)?])
+    }
 }
 
 impl Sheet<'_> {
@@ -80,6 +89,7 @@ fn are_equal(a: &Sheet<'_>, edge_a: usize, b: &Sheet<'_>, edge_b: usize, reverse
 impl Pair<'_> {
     /// Where the search for the foot of a point on a patch begins: the nearest vertex of a coarse grid, if one is as near
     /// as it must be for a point on the patch.
+    #[inline(never)]
     pub(super) fn coarse_foot(&self, side: usize, grid: &Grid<'_>, point: [i64; 3]) -> (Place, i64) {
         let stride = grid.depth.saturating_sub(COARSE);
         let n = 1_usize << (grid.depth - stride);
@@ -103,6 +113,7 @@ impl Pair<'_> {
     }
 
     /// The spot of an edge's parameter if it lies on the other patch, up to `slack` of its domain.
+    #[inline(never)]
     fn on_surface(&self, side: usize, edge: usize, parameter: i64, near: Place, slack: i64) -> Option<Spot> {
         let spot = self.edge_spot(side, edge, parameter, near)?;
         let on =
@@ -174,20 +185,20 @@ pub(super) fn find(
     found.overlap = regions(pair, tolerance, &mut parts, out)?;
     for part in parts.list.iter().flatten().filter(|part| !part.used) {
         let first = out.used;
-        out.emit(&part.ends[0])?;
         run(pair, tolerance, part, false, out)?;
         let kind = match (part.shared, part.tangential) {
             (true, true) => CurveKind::SharedEdgeTangential,
             (true, false) => CurveKind::SharedEdge,
             _ => CurveKind::EdgeOnSurface,
         };
-        let ends = part.ends.map(|spot| pair.end(spot.at));
+        let ends = part.ends.map(|at| pair.end(at));
         out.finish(kind, false, ends, first)?;
     }
     Ok(found)
 }
 
 /// Adds the parts of one edge.
+#[inline(never)]
 fn collect(pair: &Pair<'_>, grids: [&Grid<'_>; 2], sizes: [i64; 2], (side, edge): (usize, usize), parts: &mut Parts) {
     let other = 1 - side;
     let sheet = &pair.sheets[side & 1];
@@ -255,19 +266,21 @@ fn collect(pair: &Pair<'_>, grids: [&Grid<'_>; 2], sizes: [i64; 2], (side, edge)
         let tangential = [Some(low), Some(centre), quarter, Some(high)].iter().flatten().all(|s| s.sine <= PARALLEL);
         let shared = shared_with.is_some();
         let known = parts.list.iter().flatten().any(|p| {
-            let ends = |a: &Spot, b: &Spot| difference(a.point, b.point).norm() <= pair.extent.shl(-26);
-            let same = (ends(&p.ends[0], &low) && ends(&p.ends[1], &high))
-                || (ends(&p.ends[0], &high) && ends(&p.ends[1], &low));
+            let ends = |a: [i64; 3], b: &Spot| difference(a, b.point).norm() <= pair.extent.shl(-26);
+            let [a, b] = p.points;
+            let same = (ends(a, &low) && ends(b, &high)) || (ends(a, &high) && ends(b, &low));
             same && p.side != side
                 && pair.sheets[p.side & 1].edge_at(centre.at[p.side & 1], 1 << 20) == Some(p.edge as u8)
         });
         if !known {
-            parts.push(OnSurface { side, edge, ends: [low, high], tangential, shared, used: false });
+            let (ends, points) = ([low.at, high.at], [low.point, high.point]);
+            parts.push(OnSurface { side, edge, ends, points, tangential, shared, used: false });
         }
     }
 }
 
 /// The last spot on the surface between a parameter on it and one that is not.
+#[inline(never)]
 fn last_on(pair: &Pair<'_>, (side, edge): (usize, usize), on: Spot, mut low: i64, mut high: i64) -> Spot {
     let mut last = on;
     for _ in 0..48 {
@@ -285,9 +298,16 @@ fn last_on(pair: &Pair<'_>, (side, edge): (usize, usize), on: Spot, mut low: i64
 
 impl Pair<'_> {
     /// The spot of a shared edge, whose place on the other patch is known.
+    #[inline(never)]
     fn shared_spot(&self, side: usize, edge: usize, parameter: i64, place: Place) -> Option<Spot> {
         let own = self.sheets[side & 1].edge_place(edge, parameter);
         let at = if side == 0 { [own, place] } else { [place, own] };
+        self.place_on_edge(side, edge, at)
+    }
+
+    /// The spot at a place on an edge, whose tangent is the edge's.
+    #[inline(never)]
+    fn place_on_edge(&self, side: usize, edge: usize, at: Places) -> Option<Spot> {
         let jets = self.jets(at, 1)?;
         let mut spot = self.spot(at, &jets);
         let [a, b] = self.sheets[side & 1].edge_direction(edge).map(Real::int);
@@ -297,7 +317,8 @@ impl Pair<'_> {
     }
 }
 
-/// Emits a part after its first point, or after its last one, backwards.
+/// Emits a part from its first point, or from its last one, backwards.
+#[inline(never)]
 fn run(
     pair: &Pair<'_>,
     tolerance: Real,
@@ -305,9 +326,11 @@ fn run(
     backwards: bool,
     out: &mut Output<'_>,
 ) -> Result<(), IntersectError> {
+    let Some(ends) = part.spots(pair) else { return Err(IntersectError::Internal) };
     let locus = Locus::Edge { side: part.side, edge: part.edge };
     let tracer = Tracer { pair, locus, forward: true, tolerance };
-    let [a, b] = if backwards { [part.ends[1].oriented(false), part.ends[0].oriented(false)] } else { part.ends };
+    let [a, b] = if backwards { [ends[1].oriented(false), ends[0].oriented(false)] } else { ends };
+    out.emit(&a)?;
     // Eight pieces at first: a chord says little about a long edge.
     let sheet = &pair.sheets[part.side & 1];
     let [low, high] = [a, b].map(|s| sheet.edge_parameter(part.edge, s.at[part.side & 1]));
@@ -328,22 +351,23 @@ fn run(
 }
 
 /// Joins tangential parts that close to the border of a region where the surfaces coincide.
+#[inline(never)]
 fn regions(pair: &Pair<'_>, tolerance: Real, parts: &mut Parts, out: &mut Output<'_>) -> Result<bool, IntersectError> {
-    let near = |a: &Spot, b: &Spot| difference(a.point, b.point).norm() <= pair.extent.shl(-24);
+    let near = |a: [i64; 3], b: [i64; 3]| difference(a, b).norm() <= pair.extent.shl(-24);
     let mut any = false;
     for start in 0..parts.count {
         let mut order = [(0, false); MOST];
         let Some(first) = parts.get(start).filter(|p| p.tangential && !p.used) else { continue };
-        let (mut length, mut end) = (1, first.ends[1]);
+        let (mut length, mut end) = (1, first.points[1]);
         order[0] = (start, false);
-        while !near(&end, &first.ends[0]) && length < MOST {
+        while !near(end, first.points[0]) && length < MOST {
             let next = (0..parts.count).find_map(|k| {
                 let part = parts.get(k).filter(|p| p.tangential && !p.used)?;
                 if order.iter().take(length).any(|(used, _)| *used == k) {
                     return None;
                 }
-                let [a, b] = part.ends;
-                if near(&a, &end) { Some((k, false, b)) } else { near(&b, &end).then_some((k, true, a)) }
+                let [a, b] = part.points;
+                if near(a, end) { Some((k, false, b)) } else { near(b, end).then_some((k, true, a)) }
             });
             let Some((k, backwards, other)) = next else { break };
             if let Some(place) = order.get_mut(length) {
@@ -352,21 +376,14 @@ fn regions(pair: &Pair<'_>, tolerance: Real, parts: &mut Parts, out: &mut Output
             length += 1;
             end = other;
         }
-        if length < 2 || !near(&end, &first.ends[0]) {
+        if length < 2 || !near(end, first.points[0]) {
             continue;
         }
         let (begin, unrefined) = (out.used, out.unrefined);
-        for (n, (k, backwards)) in order.iter().take(length).enumerate() {
+        for (k, backwards) in order.iter().take(length) {
             let Some(part) = parts.get(*k) else { continue };
-            if n == 0 || !part.tangential {
-                out.emit(&part.ends[0])?;
-            } else {
-                // A corner of the border, with the tangent of the part that begins.
-                let spot = if *backwards { part.ends[1].oriented(false) } else { part.ends[0] };
-                out.emit(&spot)?;
-            }
-            let part = shortened(pair, &part, *backwards);
-            run(pair, tolerance, &part, *backwards, out)?;
+            // A corner of the border has the tangent of the part that begins.
+            run(pair, tolerance, &shortened(pair, &part, *backwards), *backwards, out)?;
         }
         if encloses(pair, out.points.get(begin..out.used).unwrap_or(&[])) {
             out.finish(CurveKind::OverlapRegion, true, [super::End::None; 2], begin)?;
@@ -384,19 +401,22 @@ fn regions(pair: &Pair<'_>, tolerance: Real, parts: &mut Parts, out: &mut Output
 }
 
 /// A part that ends 2^-34 of an edge early, so that a corner has a point for either of its tangents.
+#[inline(never)]
 fn shortened(pair: &Pair<'_>, part: &OnSurface, backwards: bool) -> OnSurface {
     let sheet = &pair.sheets[part.side & 1];
     let last = usize::from(!backwards);
     let end = part.ends[last & 1];
     let parameter =
-        sheet.edge_parameter(part.edge, end.at[part.side & 1]) + if backwards { ONE >> 34 } else { -(ONE >> 34) };
-    let spot = pair.edge_spot(part.side, part.edge, parameter, end.at[(1 - part.side) & 1]);
+        sheet.edge_parameter(part.edge, end[part.side & 1]) + if backwards { ONE >> 34 } else { -(ONE >> 34) };
     let mut out = *part;
-    out.ends[last & 1] = spot.unwrap_or(end);
+    if let Some(spot) = pair.edge_spot(part.side, part.edge, parameter, end[(1 - part.side) & 1]) {
+        (out.ends[last & 1], out.points[last & 1]) = (spot.at, spot.point);
+    }
     out
 }
 
 /// Whether points amid a closed border lie on both surfaces.
+#[inline(never)]
 fn encloses(pair: &Pair<'_>, border: &[CurvePoint]) -> bool {
     let share = Real::ONE / Real::int(border.len().max(1) as i64);
     let mut sums = [Real::ZERO; 4];
@@ -423,6 +443,7 @@ fn encloses(pair: &Pair<'_>, border: &[CurvePoint]) -> bool {
 
 impl Output<'_> {
     /// Ends the curve whose points begin at `first`: measures it and enters it in the list.
+    #[inline(never)]
     pub(super) fn finish(
         &mut self,
         kind: CurveKind,

@@ -24,6 +24,7 @@ impl Piece {
         Self::through(p.point, p.tangent, q.point, q.tangent)
     }
 
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
     pub(super) fn through(p: [i64; 3], start: V3, q: [i64; 3], end: V3) -> Self {
         let chord = difference(q, p);
         let square = (end - start).square();
@@ -38,6 +39,7 @@ impl Piece {
     }
 
     /// The point at a parameter, from the start of the piece, and the derivative.
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
     fn eval(&self, s: Real) -> (V3, V3) {
         let r = Real::ONE - s;
         let sr = s * r;
@@ -57,6 +59,7 @@ impl Piece {
     }
 
     /// The distance of a point from the piece; `None` for points beside it beyond a sixteenth past its ends.
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
     pub(super) fn distance(&self, point: [i64; 3]) -> Option<Real> {
         let x = difference(point, self.origin);
         let mut s = x.dot(self.chord) / self.chord.square();

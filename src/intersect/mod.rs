@@ -112,10 +112,13 @@ pub use probe::{Projection, curve_points, project};
 
 use crate::num::{Coord, Real};
 use crate::patch::SurfaceNet;
+use certify::Report;
 use chain::{Chains, Signature};
+use descent::Found;
 use grid::{Grid, box_count, vertex_count};
 use key::Crossing;
 use newton::Pair;
+use sheet::in_rooms;
 use solve::Solver;
 use trace::Output;
 
@@ -380,49 +383,17 @@ fn in_order<'b>(
             return Err(IntersectError::DegeneratePatch { side });
         }
     }
-    let pair = Pair::new(nets);
-    let out = Output { points, used: 0, curves, curve_count: 0, branches, branch_count: 0, unrefined: 0 };
-    let tolerance = Real::new(options.tolerance.to_bits(), -44);
-    let cell = pair.extent.shl(1 - depth as i32);
-    let mut solver = Solver { pair: &pair, out, tolerance, cell, undecided: 0 };
-    let edges = edges::find(&pair, grids, tolerance, &mut solver.out)?;
-    solver.undecided += edges.undecided;
-
     let room = records.len().min(links.len()) & !1;
-    let records = records.get_mut(..room).unwrap_or(&mut []);
-    let found = descent::descend(grids, true, options.pairs, records)?;
-    let is_border = |c: Crossing| {
-        let grid = grids[usize::from(c.side) & 1];
-        c.edge.is_border(grid.triangle, depth)
-    };
-    let mut sensitive = false;
-    if found.zeros > 0 {
-        let mut signature = |positive: bool| -> Result<Signature, IntersectError> {
-            let found = descent::descend(grids, positive, options.pairs, records)?;
-            let used = 2 * found.segments;
-            let (records, links) = (records.get_mut(..used), links.get_mut(..used));
-            let (records, links) = (records.unwrap_or(&mut []), links.unwrap_or(&mut []));
-            Chains::new(records, links, found.degenerate > 0, is_border)?.signature()
-        };
-        sensitive = signature(true)? != signature(false)?;
-        descent::descend(grids, true, options.pairs, records)?;
-    }
-    let used = 2 * found.segments;
-    let (records, links) = (records.get_mut(..used).unwrap_or(&mut []), links.get_mut(..used).unwrap_or(&mut []));
-    let mut chains = Chains::new(records, links, found.degenerate > 0, is_border)?;
-
-    // A region of coincidence is a contact everywhere.
-    let tested = options.certificate_pairs > 0 && !edges.overlap;
-    let report = if tested { Some(solver.contacts(options.certificate_pairs)?) } else { None };
-    solver.arms()?;
-    solver.borders(grids, &mut chains)?;
-    solver.chains(grids, &mut chains)?;
-    if let Some(report) = &report {
-        solver.around(report)?;
-        solver.leftovers(report)?;
-    }
-    let undecided = solver.undecided.max(u32::from(edges.overlap));
-    let Output { points, used, curves, curve_count, branches, branch_count, .. } = solver.out;
+    let (records, links) = (records.get_mut(..room).unwrap_or(&mut []), links.get_mut(..room).unwrap_or(&mut []));
+    let out = Output { points, used: 0, curves, curve_count: 0, branches, branch_count: 0, unrefined: 0 };
+    let found = in_rooms(nets[0].points().len().max(nets[1].points().len()), |rooms| {
+        let pair = Pair::new(nets, rooms);
+        let tolerance = Real::new(options.tolerance.to_bits(), -44);
+        let cell = pair.extent.shl(1 - depth as i32);
+        let solver = Solver { pair: &pair, out, tolerance, cell, undecided: 0 };
+        solve(solver, grids, options, (records, links))
+    });
+    let (Output { points, used, curves, curve_count, branches, branch_count, .. }, flags) = found?;
     if exchanged {
         points.iter_mut().take(used).for_each(|p| *p = p.exchanged());
         curves.iter_mut().take(curve_count).for_each(|c| c.ends = c.ends.map(End::exchanged));
@@ -432,13 +403,77 @@ fn in_order<'b>(
         points: points.get(..used).unwrap_or(&[]),
         curves: curves.get(..curve_count).unwrap_or(&[]),
         branches: branches.get(..branch_count).unwrap_or(&[]),
-        undecided,
+        ..flags
+    })
+}
+
+/// Finds all curves: what was written, and the flags.
+#[inline(never)]
+fn solve<'b>(
+    mut solver: Solver<'_, '_, 'b>,
+    grids: [&Grid<'_>; 2],
+    options: &Options,
+    (records, links): (&mut [u64], &mut [u32]),
+) -> Result<(Output<'b>, Intersection<'b>), IntersectError> {
+    let edges = edges::find(solver.pair, grids, solver.tolerance, &mut solver.out)?;
+    solver.undecided += edges.undecided;
+    let (found, perturbation_sensitive) = segments(grids, options, records, links)?;
+    let used = 2 * found.segments;
+    let (records, links) = (records.get_mut(..used).unwrap_or(&mut []), links.get_mut(..used).unwrap_or(&mut []));
+    let mut chains = Chains::new(records, links, found.degenerate > 0, |c| is_border(grids, c))?;
+
+    // A region of coincidence is a contact everywhere.
+    let tested = options.certificate_pairs > 0 && !edges.overlap;
+    let mut report = Report::EMPTY;
+    if tested {
+        solver.contacts(options.certificate_pairs, &mut report)?;
+    }
+    solver.arms()?;
+    solver.borders(grids, &mut chains)?;
+    solver.chains(grids, &mut chains)?;
+    solver.around(&report)?;
+    solver.leftovers(&report)?;
+    let flags = Intersection {
+        points: &[],
+        curves: &[],
+        branches: &[],
+        undecided: solver.undecided.max(u32::from(edges.overlap)),
         zero_predicates: found.zeros,
-        perturbation_sensitive: sensitive,
+        perturbation_sensitive,
         degenerate_triangles: found.degenerate,
         segments: found.segments,
         tested,
-    })
+    };
+    Ok((solver.out, flags))
+}
+
+fn is_border(grids: [&Grid<'_>; 2], crossing: Crossing) -> bool {
+    let grid = grids[usize::from(crossing.side) & 1];
+    crossing.edge.is_border(grid.triangle, grid.depth)
+}
+
+/// Writes the segments in which the grids cross; whether moving B the other way leads to other chains.
+#[inline(never)]
+fn segments(
+    grids: [&Grid<'_>; 2],
+    options: &Options,
+    records: &mut [u64],
+    links: &mut [u32],
+) -> Result<(Found, bool), IntersectError> {
+    let found = descent::descend(grids, true, options.pairs, records)?;
+    if found.zeros == 0 {
+        return Ok((found, false));
+    }
+    let mut signature = |positive: bool| -> Result<Signature, IntersectError> {
+        let found = descent::descend(grids, positive, options.pairs, records)?;
+        let used = 2 * found.segments;
+        let (records, links) = (records.get_mut(..used), links.get_mut(..used));
+        let (records, links) = (records.unwrap_or(&mut []), links.unwrap_or(&mut []));
+        Chains::new(records, links, found.degenerate > 0, |c| is_border(grids, c))?.signature()
+    };
+    let is_sensitive = signature(true)? != signature(false)?;
+    descent::descend(grids, true, options.pairs, records)?;
+    Ok((found, is_sensitive))
 }
 
 #[cfg(feature = "defmt")]

@@ -4,7 +4,7 @@
 //! with r = R − S, the normals nA and nB, T = nA × nB and a plane through c with normal τ,
 //! δ = \[(nB·r)(τ × nA) + (τ·(c − S)) T\] / (τ·T) is the move of S within its tangent plane, δ − r that of R.
 
-use super::sheet::{Jet, ONE, POINT_BITS, Place, Sheet};
+use super::sheet::{Homogeneous, Jet, ONE, POINT_BITS, Place, Sheet};
 use super::vector::V3;
 use crate::num::Real;
 use crate::patch::SurfaceNet;
@@ -44,11 +44,13 @@ pub(super) struct Pair<'a> {
     pub(super) extent: Real,
 }
 
+#[cfg_attr(target_pointer_width = "32", inline(never))]
 pub(super) fn difference(a: [i64; 3], b: [i64; 3]) -> V3 {
     V3::bits(three!(|k| a[k].wrapping_sub(b[k])), -POINT_BITS)
 }
 
 /// `point` + `move`, both in space.
+#[cfg_attr(target_pointer_width = "32", inline(never))]
 pub(super) fn moved(point: [i64; 3], by: V3) -> [i64; 3] {
     let by = by.fixed(POINT_BITS);
     three!(|k| point[k].wrapping_add(by[k]))
@@ -59,13 +61,15 @@ pub(super) fn middle(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
 }
 
 /// The parameters' move whose image under the derivatives is nearest to `by`; the normal is Su × Sv.
-#[inline]
+#[cfg_attr(target_pointer_width = "32", inline(never))]
+#[cfg_attr(not(target_pointer_width = "32"), inline)]
 pub(super) fn pull_back(first: &[V3; 2], normal: V3, by: V3) -> [Real; 2] {
     let inverse = Real::ONE / normal.square();
     [by.cross(first[1]).dot(normal) * inverse, first[0].cross(by).dot(normal) * inverse]
 }
 
 /// A place moved by parameters, within an eighth of the domain.
+#[cfg_attr(target_pointer_width = "32", inline(never))]
 pub(super) fn shifted(place: Place, by: [Real; 2]) -> Place {
     let step = |p: i64, d: Real| {
         let d = d.nearest(PARAMETER_BITS).clamp(-ONE, ONE);
@@ -75,8 +79,10 @@ pub(super) fn shifted(place: Place, by: [Real; 2]) -> Place {
 }
 
 impl<'a> Pair<'a> {
-    pub(super) fn new([a, b]: [SurfaceNet<'a>; 2]) -> Self {
-        let mut pair = Self { sheets: [Sheet::new(a), Sheet::new(b)], accept: Real::ZERO, extent: Real::ZERO };
+    /// Two patches in rooms of as many points as they have, or more.
+    pub(super) fn new([a, b]: [SurfaceNet<'a>; 2], [one, two]: [&'a mut [Homogeneous]; 2]) -> Self {
+        let sheets = [Sheet::new(a, one), Sheet::new(b, two)];
+        let mut pair = Self { sheets, accept: Real::ZERO, extent: Real::ZERO };
         pair.extent = pair.sheets[0].extent.max(pair.sheets[1].extent);
         pair.accept = Real::power(-36).max(pair.extent.shl(-46));
         pair
@@ -84,10 +90,20 @@ impl<'a> Pair<'a> {
 
     /// Jets at places, up to an order of derivatives.
     pub(super) fn jets(&self, at: Places, order: u32) -> Option<[Jet; 2]> {
-        Some([self.sheets[0].eval(at[0], order)?, self.sheets[1].eval(at[1], order)?])
+        let mut jets = [Jet::BLANK; 2];
+        self.jets_to(at, order, &mut jets)?;
+        Some(jets)
+    }
+
+    /// The same in place.
+    #[inline]
+    pub(super) fn jets_to(&self, at: Places, order: u32, [a, b]: &mut [Jet; 2]) -> Option<()> {
+        self.sheets[0].eval_to(at[0], order, a)?;
+        self.sheets[1].eval_to(at[1], order, b)
     }
 
     /// The spot at a place whose jets are known.
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
     pub(super) fn spot(&self, at: Places, jets: &[Jet; 2]) -> Spot {
         let normals = [jets[0].normal(), jets[1].normal()];
         let product = normals[0].cross(normals[1]);
@@ -104,8 +120,9 @@ impl<'a> Pair<'a> {
     #[inline(never)]
     pub(super) fn in_plane(&self, mut at: Places, c: [i64; 3], plane: V3) -> Option<Spot> {
         let near = self.extent.shl(-20);
+        let mut jets = [Jet::BLANK; 2];
         for round in 0..LIMIT {
-            let jets = self.jets(at, 1)?;
+            self.jets_to(at, 1, &mut jets)?;
             let r = difference(jets[1].point, jets[0].point);
             let off = plane.dot(difference(c, jets[0].point));
             let square = r.square();
@@ -127,10 +144,16 @@ impl<'a> Pair<'a> {
 
     /// The point of both surfaces nearest to the line of intersection from `at`: the plane moves along.
     pub(super) fn nearest(&self, at: Places) -> Option<Spot> {
+        let (c, tangent) = self.line(at)?;
+        self.in_plane(at, c, tangent)
+    }
+
+    /// The middle of two places' points, and the direction across both normals.
+    #[inline(never)]
+    fn line(&self, at: Places) -> Option<([i64; 3], V3)> {
         let jets = self.jets(at, 1)?;
         let tangent = jets[0].normal().cross(jets[1].normal());
-        let c = middle(jets[0].point, jets[1].point);
-        self.in_plane(at, c, tangent.unit())
+        Some((middle(jets[0].point, jets[1].point), tangent.unit()))
     }
 
     /// The point where an edge of one patch meets the other, near `at`; the edge's parameter and the other's two move.
@@ -139,8 +162,9 @@ impl<'a> Pair<'a> {
         let (one, other) = (side & 1, 1 - (side & 1));
         let (sheet, direction) = (&self.sheets[one], self.sheets[one].edge_direction(edge));
         at[one] = sheet.edge_place(edge, sheet.edge_parameter(edge, at[one]));
+        let mut jets = [Jet::BLANK; 2];
         for round in 0..LIMIT {
-            let jets = self.jets(at, 1)?;
+            self.jets_to(at, 1, &mut jets)?;
             let r = difference(jets[other].point, jets[one].point);
             if round > 0 && r.square() <= self.accept.square() {
                 return Some(self.spot(at, &jets));
@@ -161,19 +185,35 @@ impl<'a> Pair<'a> {
     }
 
     /// The foot on a surface of a point near it, from a place; by Gauss's method, without second derivatives.
-    pub(super) fn foot(&self, side: usize, mut place: Place, c: [i64; 3]) -> Option<(Place, Jet)> {
+    pub(super) fn foot(&self, side: usize, place: Place, c: [i64; 3]) -> Option<(Place, Jet)> {
+        let mut jet = Jet::BLANK;
+        let place = self.foot_to(side, place, c, &mut jet)?;
+        Some((place, jet))
+    }
+
+    /// The foot's place alone.
+    #[inline(never)]
+    pub(super) fn foot_place(&self, side: usize, place: Place, c: [i64; 3]) -> Option<Place> {
+        let mut jet = Jet::BLANK;
+        self.foot_to(side, place, c, &mut jet)
+    }
+
+    /// The same with the jet in place.
+    #[inline(never)]
+    pub(super) fn foot_to(&self, side: usize, mut place: Place, c: [i64; 3], jet: &mut Jet) -> Option<Place> {
         let sheet = &self.sheets[side & 1];
         for _ in 0..LIMIT {
-            let jet = sheet.eval(place, 1)?;
+            sheet.eval_to(place, 1, jet)?;
             let step = pull_back(&jet.first, jet.normal(), difference(c, jet.point));
             let next = shifted(place, step);
             let size = both!(|k| (next[k] - place[k]).abs());
             if size[0].max(size[1]) <= 2 {
-                return Some((place, jet));
+                return Some(place);
             }
             place = next;
         }
-        Some((place, sheet.eval(place, 1)?))
+        sheet.eval_to(place, 1, jet)?;
+        Some(place)
     }
 
     /// Whether a place lies in a patch's domain, up to `slack` units of 2^-48.

@@ -6,12 +6,11 @@
 //! angle whose sine is at most that over sin γ (after Sederberg and Meyers 1988). A rational part has the derivatives
 //! (A' − S w')/w; moved to its centre, |S| is at most its radius, which widens the cone.
 
-use super::sheet::{Homogeneous, ONE, PARAMETER_BITS, Place, Sheet};
+use super::sheet::{Homogeneous, ONE, PARAMETER_BITS, Place, ROOM, Sheet, between, combine};
 use super::vector::V3;
 use crate::num::Real;
 use crate::patch::{MAX_DEGREE, triangle_index, triangle_len};
 
-const ROOM: usize = (MAX_DEGREE + 1) * (MAX_DEGREE + 1);
 /// Fraction bits of a hull.
 const HULL_BITS: i32 = 26;
 /// What a hull's coordinates may be wrong by, in its units, twice and rounded up.
@@ -74,15 +73,14 @@ impl Region {
 }
 
 /// A part of a patch.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
+#[derive(Debug)]
+pub(super) struct Part<'r> {
     pub(super) region: Option<Region>,
     triangle: bool,
     degrees: (usize, usize),
     count: usize,
-    hull: [[i64; 3]; ROOM],
-    /// Weights relative to the largest, 24 fraction bits; all alike for polynomial parts.
-    weights: [i32; ROOM],
+    /// Points, with weights relative to the largest, 24 fraction bits; all alike for polynomial parts.
+    hull: &'r mut [Homogeneous],
     low: [i64; 3],
     high: [i64; 3],
     pub(super) cone: Cone,
@@ -113,61 +111,70 @@ impl Cone {
     }
 }
 
+#[cfg_attr(target_pointer_width = "32", inline(never))]
 fn lerp(a: &Homogeneous, b: &Homogeneous, t: i64) -> Homogeneous {
     let mut out = [0; 4];
     for k in 0..4 {
-        let product = (i128::from(b[k]) - i128::from(a[k])) * i128::from(t);
-        out[k] = a[k].wrapping_add(((product + (1 << (PARAMETER_BITS - 1))) >> PARAMETER_BITS) as i64);
+        out[k] = between(a[k], b[k], t);
     }
     out
 }
 
 /// A de Casteljau step of entry i.
-fn step(values: &mut [Homogeneous; MAX_DEGREE + 1], i: usize, t: i64) {
+fn advance(values: &mut Line, i: usize, t: i64) {
     let i = i.min(MAX_DEGREE - 1);
     values[i] = lerp(&values[i], &values[i + 1], t);
 }
 
-/// The control points of the part low ..= high of a curve: the blossom at low^(n−k) high^k.
-fn piece(values: &[Homogeneous; MAX_DEGREE + 1], n: usize, low: i64, high: i64) -> [Homogeneous; MAX_DEGREE + 1] {
-    let mut out = [[0; 4]; MAX_DEGREE + 1];
-    let mut start = *values;
-    // `start` holds the values after n − k steps at `low`; k steps at `high` remain.
+/// A row of control points.
+type Line = [Homogeneous; MAX_DEGREE + 1];
+
+/// The points of a net that begin at `start`, `step` apart.
+fn line(net: &[Homogeneous], (start, step): (usize, usize)) -> Line {
+    let mut line = [[0; 4]; MAX_DEGREE + 1];
+    for (value, point) in line.iter_mut().zip(net.iter().skip(start).step_by(step)) {
+        *value = *point;
+    }
+    line
+}
+
+/// Writes the control points of the part low ..= high of a curve of degree `n` into a net, from `start`, `step` apart: the
+/// blossom at low^(n−k) high^k. The curve's own points are used up.
+#[inline(never)]
+fn split(line: &mut Line, n: usize, [low, high]: [i64; 2], net: &mut [Homogeneous], (start, step): (usize, usize)) {
+    // `line` holds the values after n − k steps at `low`; k steps at `high` remain.
     for k in (0..=n.min(MAX_DEGREE)).rev() {
-        let mut rest = start;
+        let mut rest = *line;
         for left in (1..=k).rev() {
             for i in 0..left {
-                step(&mut rest, i, high);
+                advance(&mut rest, i, high);
             }
         }
-        out[k.min(MAX_DEGREE)] = rest[0];
+        if let Some(out) = net.get_mut(start + k * step) {
+            *out = rest[0];
+        }
         for i in 0..k {
-            step(&mut start, i, low);
+            advance(line, i, low);
         }
     }
-    out
 }
 
 /// The blossom of a triangular net: `counts` steps at each of the corners.
-fn triangle_blossom(net: &[Homogeneous; ROOM], n: usize, corners: &[Place; 3], counts: [usize; 3]) -> Homogeneous {
+fn triangle_blossom(net: &[Homogeneous], n: usize, corners: &[Place; 3], counts: [usize; 3]) -> Homogeneous {
     let mut values = [[0; 4]; triangle_len(MAX_DEGREE)];
     for (out, value) in values.iter_mut().zip(net).take(triangle_len(n)) {
         *out = *value;
     }
     let mut degree = n;
     for (corner, count) in corners.iter().zip(counts) {
-        let weights = [corner[0], corner[1], ONE - corner[0] - corner[1]];
         for _ in 0..count {
             degree = degree.saturating_sub(1);
             for row in 0..=degree {
                 for k in 0..=row {
                     let at = triangle_index(row - k, k);
                     let parents = [at, at + row + 1, at + row + 2].map(|p| values.get(p).copied().unwrap_or([0; 4]));
-                    let mut sum = [0; 4];
-                    for (c, sum) in sum.iter_mut().enumerate() {
-                        let total = (0..3).fold(0, |s, p| s + i128::from(parents[p][c]) * i128::from(weights[p]));
-                        *sum = ((total + (1 << (PARAMETER_BITS - 1))) >> PARAMETER_BITS) as i64;
-                    }
+                    let [u, v, w] = &parents;
+                    let sum = combine::<4>([u, v, w], *corner);
                     if let Some(value) = values.get_mut(at) {
                         *value = sum;
                     }
@@ -178,62 +185,52 @@ fn triangle_blossom(net: &[Homogeneous; ROOM], n: usize, corners: &[Place; 3], c
     values[0]
 }
 
-impl Part {
-    /// No part.
-    pub(super) const BLANK: Self = Self {
-        region: None,
-        triangle: false,
-        degrees: (1, 1),
-        count: 0,
-        hull: [[0; 3]; ROOM],
-        weights: [0; ROOM],
-        low: [0; 3],
-        high: [0; 3],
-        cone: Cone::UNKNOWN,
-        is_aimed: false,
-    };
+impl<'r> Part<'r> {
+    /// No part; its hull in a room of as many points as the patch has, or more.
+    pub(super) fn new(room: &'r mut [Homogeneous]) -> Self {
+        Self {
+            region: None,
+            triangle: false,
+            degrees: (1, 1),
+            count: 0,
+            hull: room,
+            low: [0; 3],
+            high: [0; 3],
+            cone: Cone::UNKNOWN,
+            is_aimed: false,
+        }
+    }
 
     /// Becomes the part of a patch over a region.
     #[inline(never)]
     pub(super) fn load(&mut self, sheet: &Sheet<'_>, region: Region) {
-        let mut net = [[0; 4]; ROOM];
         let (m, h) = (sheet.degrees.0.min(MAX_DEGREE), sheet.degrees.1.min(MAX_DEGREE));
         let count = if sheet.triangle { triangle_len(m) } else { (m + 1) * (h + 1) };
         if sheet.triangle {
             let corners = region.corners();
             for row in 0..=m {
                 for k in 0..=row {
-                    if let Some(out) = net.get_mut(triangle_index(row - k, k)) {
-                        *out = triangle_blossom(&sheet.net, m, &corners, [m - row, row - k, k]);
+                    if let Some(out) = self.hull.get_mut(triangle_index(row - k, k)) {
+                        *out = triangle_blossom(sheet.net, m, &corners, [m - row, row - k, k]);
                     }
                 }
             }
         } else {
             let ([u, v], [x, y]) = (region.place(0, 0), region.place(1, 1));
-            let mut columns = [[[0; 4]; MAX_DEGREE + 1]; MAX_DEGREE + 1];
             for i in 0..=m {
-                let mut row = [[0; 4]; MAX_DEGREE + 1];
-                for (out, value) in row.iter_mut().zip(sheet.net.iter().skip(i * (h + 1))).take(h + 1) {
-                    *out = *value;
-                }
-                for (column, value) in columns.iter_mut().zip(piece(&row, h, v, y)) {
-                    column[i.min(MAX_DEGREE)] = value;
-                }
+                let row = (i * (h + 1), 1);
+                split(&mut line(sheet.net, row), h, [v, y], self.hull, row);
             }
-            for (j, column) in columns.iter().enumerate().take(h + 1) {
-                for (i, value) in piece(column, m, u, x).into_iter().enumerate().take(m + 1) {
-                    if let Some(out) = net.get_mut(i * (h + 1) + j) {
-                        *out = value;
-                    }
-                }
+            for j in 0..=h {
+                let column = (j, h + 1);
+                split(&mut line(self.hull, column), m, [u, x], self.hull, column);
             }
         }
         self.region = Some(region);
         (self.triangle, self.degrees, self.count) = (sheet.triangle, (m, h), count);
-        self.weights = [1 << 24; ROOM];
         (self.low, self.high) = ([i64::MAX; 3], [i64::MIN; 3]);
         self.is_aimed = false;
-        self.project(&net, sheet);
+        self.project(sheet);
     }
 
     /// Finds the cone of normals, once.
@@ -244,29 +241,29 @@ impl Part {
         }
     }
 
-    /// Control points to the hull, weights, the box.
-    fn project(&mut self, net: &[Homogeneous; ROOM], sheet: &Sheet<'_>) {
-        let heaviest = net.iter().take(self.count).fold(1, |most, c| most.max(c[3]));
-        for (at, c) in net.iter().enumerate().take(self.count) {
-            let mut point = [0; 3];
+    /// Control points, in place, to the hull with its weights; the box.
+    fn project(&mut self, sheet: &Sheet<'_>) {
+        let heaviest = self.points().iter().fold(1, |most, c| most.max(c[3]));
+        let Some(points) = self.hull.get_mut(..self.count) else { return };
+        for c in points {
             for k in 0..3 {
-                point[k] = if sheet.rational {
+                c[k] = if sheet.rational {
                     (i128::from(c[k]) << HULL_BITS).checked_div(i128::from(c[3])).unwrap_or(0) as i64
                 } else {
                     c[k] >> (sheet.bits - HULL_BITS)
                 };
-                self.low[k] = self.low[k].min(point[k]);
-                self.high[k] = self.high[k].max(point[k]);
+                self.low[k] = self.low[k].min(c[k]);
+                self.high[k] = self.high[k].max(c[k]);
             }
-            self.hull[at] = point;
-            if sheet.rational {
-                let weight = (i128::from(c[3]) << 24).checked_div(i128::from(heaviest)).unwrap_or(0);
-                self.weights[at] = weight as i32;
-            }
+            c[3] = if sheet.rational {
+                (i128::from(c[3]) << 24).checked_div(i128::from(heaviest)).unwrap_or(0) as i64
+            } else {
+                1 << 24
+            };
         }
     }
 
-    fn points(&self) -> &[[i64; 3]] {
+    fn points(&self) -> &[Homogeneous] {
         self.hull.get(..self.count).unwrap_or(&[])
     }
 
@@ -305,9 +302,9 @@ impl Part {
         let size = self.size().max(1);
         let shift = (64 - size.leading_zeros() as i32 - 28).max(0);
         let mut points = [[0_i64; 3]; ROOM];
-        for ((out, p), w) in points.iter_mut().zip(self.points()).zip(&self.weights) {
+        for (out, p) in points.iter_mut().zip(self.points()) {
             for k in 0..3 {
-                out[k] = (((p[k] - middle[k]) >> shift) * i64::from(*w)) >> 24;
+                out[k] = (((p[k] - middle[k]) >> shift) * p[3]) >> 24;
             }
         }
         let radius = (size >> shift) + 1;
@@ -334,8 +331,8 @@ impl Part {
             return None;
         }
         let (mut worst, mut shortest, mut turn) = (Real::ZERO, Real::power(60), 0_i64);
-        let weight = |k: usize| self.weights.get(k).copied().unwrap_or(0);
-        self.differences(along, |a, b| turn = turn.max(i64::from((weight(a) - weight(b)).abs())));
+        let weight = |k: usize| self.hull.get(k).map_or(0, |p| p[3]);
+        self.differences(along, |a, b| turn = turn.max((weight(a) - weight(b)).abs()));
         // Two units of rounding a component, and what the weights' change adds.
         let widening = Real::int(4 + if turn == 0 { 0 } else { 2 * ((radius * turn) >> 24) + 2 });
         let inverse = Real::ONE / length.sqrt();

@@ -1,6 +1,5 @@
 //! Sections of a surface by planes across an axis: contour lines.
 
-use super::sheet::Sheet;
 use super::{Buffers, IntersectError, Intersection, Options, intersect};
 use crate::geometry::{Axis, Point3};
 use crate::num::I16F16;
@@ -73,6 +72,3 @@ pub fn section<'b>(
     let plane = SurfaceNet::Tensor(TensorNet::of_checked((1, 1), &corners));
     intersect(net, plane, options, buffers)
 }
-
-/// What keeps [`Sheet`]s small enough for a stack: two of them, as [`intersect`] needs.
-const _: () = assert!(size_of::<Sheet<'_>>() < 3072);

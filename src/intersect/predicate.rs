@@ -24,13 +24,15 @@ fn minus(a: GridVertex, b: GridVertex) -> [i64; 3] {
     three!(|k| i64::from(a[k]) - i64::from(b[k]))
 }
 
-#[inline(always)]
+#[cfg_attr(target_pointer_width = "32", inline(never))]
+#[cfg_attr(not(target_pointer_width = "32"), inline(always))]
 fn cross(a: [i64; 3], b: [i64; 3]) -> Wide {
     let [a, b] = [a, b].map(|v| v.map(i128::from));
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-#[inline(always)]
+#[cfg_attr(target_pointer_width = "32", inline(never))]
+#[cfg_attr(not(target_pointer_width = "32"), inline(always))]
 fn dot(a: &Wide, b: [i64; 3]) -> i128 {
     a[0] * i128::from(b[0]) + a[1] * i128::from(b[1]) + a[2] * i128::from(b[2])
 }

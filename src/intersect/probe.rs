@@ -3,7 +3,7 @@
 use super::curve::CurvePoint;
 use super::grid::{Grid, GridBox, GridVertex, vertex_count};
 use super::newton::{Pair, difference, pull_back, shifted};
-use super::sheet::{ONE, POINT_BITS, Place, Sheet};
+use super::sheet::{ONE, POINT_BITS, Place, ROOM, Sheet};
 use super::vector::V3;
 use super::{Buffer, I16F48, I20F44, IntersectError, check_depth};
 use crate::geometry::Point3;
@@ -77,7 +77,8 @@ pub fn project(
     boxes: &mut [GridBox],
 ) -> Result<Projection, IntersectError> {
     let grid = grid(net, depth, vertices, boxes)?;
-    let sheet = Sheet::new(net);
+    let mut room = [[0; 4]; ROOM];
+    let sheet = Sheet::new(net, &mut room);
     let target = point.to_array().map(Coord::bits);
     let mut best = ([0; 2], i128::MAX);
     let n = 1_usize << depth;
@@ -195,7 +196,9 @@ pub fn curve_points(
     }
     let count = 2 * curve.points().len();
     let ruled = TensorNet::of_checked((curve.degree(), 1), points.get(..count).unwrap_or(&points));
-    let pair = Pair::new([SurfaceNet::Tensor(ruled), net]);
+    let mut one = [[0; 4]; ROOM];
+    let mut two = [[0; 4]; ROOM];
+    let pair = Pair::new([SurfaceNet::Tensor(ruled), net], [&mut one, &mut two]);
     let steps = 1_i64 << depth;
     let mut used = 0;
     let point_at = |k: i64| {

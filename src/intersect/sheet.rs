@@ -4,18 +4,20 @@
 //! point of degrees (m, h) is within (m + h) / 2 units of the net's own scale, 2^-44 or 2^-42 for polynomial patches.
 
 use super::vector::V3;
-use crate::num::{Coord, I16F16, Real};
+use crate::num::{Coord, I16F16, Real, product_half_up, products_half_up};
 use crate::patch::{MAX_DEGREE, SurfaceNet, triangle_index, triangle_len};
 
 /// Fraction bits of parameters.
 pub(super) const PARAMETER_BITS: i32 = 48;
+const PARAMETER: u32 = PARAMETER_BITS as u32;
 /// The parameter 1.
 pub(super) const ONE: i64 = 1 << PARAMETER_BITS;
 /// Fraction bits of points.
 pub(super) const POINT_BITS: i32 = 44;
 /// Bits of the largest coordinate of a prepared net: five are left for extrapolation past the borders.
 const NET_BITS: i32 = 57;
-const ROOM: usize = (MAX_DEGREE + 1) * (MAX_DEGREE + 1);
+/// Control points of a net at most.
+pub(super) const ROOM: usize = (MAX_DEGREE + 1) * (MAX_DEGREE + 1);
 
 /// Homogeneous coordinates of a control point or of a sum of them; the weight is unused by polynomial patches.
 pub(super) type Homogeneous = [i64; 4];
@@ -35,13 +37,17 @@ pub(super) struct Jet {
 }
 
 impl Jet {
+    /// No point.
+    pub(super) const BLANK: Self = Self { point: [0; 3], first: [V3::ZERO; 2], second: [V3::ZERO; 3] };
+
     /// The normal Su × Sv, of any length.
+    #[inline]
     pub(super) fn normal(&self) -> V3 {
         self.first[0].cross(self.first[1])
     }
 }
 
-/// A patch ready for evaluation. 2.6 KB.
+/// A patch ready for evaluation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sheet<'a> {
     pub(super) source: SurfaceNet<'a>,
@@ -52,7 +58,23 @@ pub(super) struct Sheet<'a> {
     pub(super) bits: i32,
     /// The longest side of the control points' box.
     pub(super) extent: Real,
-    pub(super) net: [Homogeneous; ROOM],
+    pub(super) net: &'a [Homogeneous],
+}
+
+/// Calls `work` with room for two nets of so many control points, from 512 bytes to 2.6 KB each: it is what a stack mostly holds.
+pub(super) fn in_rooms<R>(points: usize, work: impl FnOnce([&mut [Homogeneous]; 2]) -> R) -> R {
+    match points {
+        0..=16 => with_rooms::<16, R>(work),
+        17..=36 => with_rooms::<36, R>(work),
+        _ => with_rooms::<ROOM, R>(work),
+    }
+}
+
+#[inline(never)]
+fn with_rooms<const POINTS: usize, R>(work: impl FnOnce([&mut [Homogeneous]; 2]) -> R) -> R {
+    let mut one = [[0; 4]; POINTS];
+    let mut two = [[0; 4]; POINTS];
+    work([&mut one, &mut two])
 }
 
 /// A place with its value and differences of orders 1 and 2, all unscaled.
@@ -64,9 +86,8 @@ struct Collapsed {
 
 /// `a + (b − a) t`, rounded half up.
 #[inline(always)]
-fn between(a: i64, b: i64, t: i64) -> i64 {
-    let product = i128::from(b.wrapping_sub(a)) * i128::from(t) + (1 << (PARAMETER_BITS - 1));
-    a.wrapping_add((product >> PARAMETER_BITS) as i64)
+pub(super) fn between(a: i64, b: i64, t: i64) -> i64 {
+    a.wrapping_add(product_half_up::<PARAMETER>(b.wrapping_sub(a), t))
 }
 
 #[inline(always)]
@@ -79,7 +100,8 @@ pub(super) fn minus<const D: usize>(a: &Homogeneous, b: &Homogeneous) -> Homogen
 }
 
 /// Collapses the coefficients of degree `n` at `t`.
-#[inline(always)]
+#[cfg_attr(target_pointer_width = "32", inline(never))]
+#[cfg_attr(not(target_pointer_width = "32"), inline(always))]
 fn collapse<const D: usize>(values: &mut [Homogeneous; MAX_DEGREE + 1], n: usize, t: i64) -> Collapsed {
     let mut second = [0; 4];
     for left in (2..=n.min(MAX_DEGREE)).rev() {
@@ -103,7 +125,9 @@ fn collapse<const D: usize>(values: &mut [Homogeneous; MAX_DEGREE + 1], n: usize
 }
 
 impl<'a> Sheet<'a> {
-    pub(super) fn new(source: SurfaceNet<'a>) -> Self {
+    /// Makes a patch ready in a room of as many points as it has, or more.
+    #[inline(never)]
+    pub(super) fn new(source: SurfaceNet<'a>, room: &'a mut [Homogeneous]) -> Self {
         let bounds = source.bounds();
         let sizes = [bounds.max.x, bounds.max.y, bounds.max.z]
             .into_iter()
@@ -116,8 +140,7 @@ impl<'a> Sheet<'a> {
         let most = weights.map_or(1, |w| w.iter().fold(1, |most, w| most.max(w.to_bits())));
         let weight_bits = 32 - most.leading_zeros() as i32;
         let bits = if weights.is_some() { NET_BITS - whole } else { (NET_BITS - whole).min(POINT_BITS) };
-        let mut net = [[0; 4]; ROOM];
-        for (i, (out, point)) in net.iter_mut().zip(source.points()).enumerate() {
+        for (i, (out, point)) in room.iter_mut().zip(source.points()).enumerate() {
             let coordinates = point.to_array().map(I16F16::bits);
             match weights {
                 None => {
@@ -141,25 +164,40 @@ impl<'a> Sheet<'a> {
             degrees: source.degrees(),
             bits,
             extent: Real::new(extent, -16),
-            net,
+            net: room,
         }
     }
 
     /// The point and the derivatives up to `order` (0, 1 or 2); `None` where a weight is not positive, outside the domain.
     #[inline]
     pub(super) fn eval(&self, place: Place, order: u32) -> Option<Jet> {
-        let sums = match (self.triangle, self.rational) {
-            (false, false) => self.tensor::<3>(place, order),
-            (false, true) => self.tensor::<4>(place, order),
-            (true, false) => self.triangular::<3>(place),
-            (true, true) => self.triangular::<4>(place),
-        };
-        self.jet(&sums, order)
+        let mut jet = Jet::BLANK;
+        self.eval_to(place, order, &mut jet)?;
+        Some(jet)
+    }
+
+    /// The same in place.
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
+    #[cfg_attr(not(target_pointer_width = "32"), inline)]
+    pub(super) fn eval_to(&self, place: Place, order: u32, jet: &mut Jet) -> Option<()> {
+        let mut sums = [[0; 4]; 6];
+        match (self.triangle, self.rational) {
+            (false, false) => self.tensor::<3>(place, order, &mut sums),
+            (false, true) => self.tensor::<4>(place, order, &mut sums),
+            (true, false) => self.triangular::<3>(place, &mut sums),
+            (true, true) => self.triangular::<4>(place, &mut sums),
+        }
+        if self.rational {
+            return self.quotients(&sums, order, jet);
+        }
+        self.plain(&sums, order, jet);
+        Some(())
     }
 
     /// Value, differences by u, v, uu, uv, vv, unscaled.
-    #[inline(always)]
-    fn tensor<const D: usize>(&self, [u, v]: Place, order: u32) -> [Homogeneous; 6] {
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
+    #[cfg_attr(not(target_pointer_width = "32"), inline(always))]
+    fn tensor<const D: usize>(&self, [u, v]: Place, order: u32, sums: &mut [Homogeneous; 6]) {
         let (m, h) = (self.degrees.0.min(MAX_DEGREE), self.degrees.1.min(MAX_DEGREE));
         let mut columns = [[[0; 4]; MAX_DEGREE + 1]; 3];
         let [values, slopes, bends] = &mut columns;
@@ -172,38 +210,34 @@ impl<'a> Sheet<'a> {
             let along = collapse::<D>(&mut row, h, v);
             (*value, *slope, *bend) = (along.value, along.first, along.second);
         }
-        let s = collapse::<D>(values, m, u);
-        if order == 0 {
-            return [s.value, s.first, [0; 4], [0; 4], [0; 4], [0; 4]];
+        let along = collapse::<D>(values, m, u);
+        (sums[0], sums[1], sums[3]) = (along.value, along.first, along.second);
+        if order >= 1 {
+            let along = collapse::<D>(slopes, m, u);
+            (sums[2], sums[4]) = (along.value, along.first);
         }
-        let sv = collapse::<D>(slopes, m, u);
-        if order == 1 {
-            return [s.value, s.first, sv.value, [0; 4], [0; 4], [0; 4]];
+        if order >= 2 {
+            sums[5] = collapse::<D>(bends, m, u).value;
         }
-        let svv = collapse::<D>(bends, m, u);
-        [s.value, s.first, sv.value, s.second, sv.first, svv.value]
     }
 
     /// The same over a triangle.
-    #[inline(always)]
-    fn triangular<const D: usize>(&self, [u, v]: Place) -> [Homogeneous; 6] {
-        let w = ONE.wrapping_sub(u).wrapping_sub(v);
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
+    #[cfg_attr(not(target_pointer_width = "32"), inline(always))]
+    fn triangular<const D: usize>(&self, [u, v]: Place, sums: &mut [Homogeneous; 6]) {
         let n = self.degrees.0.min(MAX_DEGREE);
         let mut values = [[0; 4]; triangle_len(MAX_DEGREE)];
         for (out, point) in values.iter_mut().zip(self.net.iter()).take(triangle_len(n)) {
             *out = *point;
         }
-        let mut second = [[0; 4]; 3];
         for degree in (0..n).rev() {
             if degree == 1 {
                 let [c200, c110, c101, c020, c011, c002, ..] = values;
                 let along_u = [minus::<D>(&c200, &c101), minus::<D>(&c101, &c002)];
                 let along_v = minus::<D>(&c011, &c002);
-                second = [
-                    minus::<D>(&along_u[0], &along_u[1]),
-                    minus::<D>(&minus::<D>(&c110, &c101), &along_v),
-                    minus::<D>(&minus::<D>(&c020, &c011), &along_v),
-                ];
+                sums[3] = minus::<D>(&along_u[0], &along_u[1]);
+                sums[4] = minus::<D>(&minus::<D>(&c110, &c101), &along_v);
+                sums[5] = minus::<D>(&minus::<D>(&c020, &c011), &along_v);
             }
             if degree == 0 {
                 break;
@@ -214,58 +248,68 @@ impl<'a> Sheet<'a> {
                     let last = values.len() - 1;
                     let [at, v_at, w_at] = corner_indices(row, k);
                     let (at, v_at, w_at) = (at.min(last), v_at.min(last), w_at.min(last));
-                    values[at] = combine::<D>([&values[at], &values[v_at], &values[w_at]], [u, v, w]);
+                    values[at] = combine::<D>([&values[at], &values[v_at], &values[w_at]], [u, v]);
                 }
             }
         }
         let [a, b, c] = [values[0], values[1], values[2]];
-        let value = combine::<D>([&a, &b, &c], [u, v, w]);
-        [value, minus::<D>(&a, &c), minus::<D>(&b, &c), second[0], second[1], second[2]]
+        sums[0] = combine::<D>([&a, &b, &c], [u, v]);
+        (sums[1], sums[2]) = (minus::<D>(&a, &c), minus::<D>(&b, &c));
     }
 
-    /// Differences to derivatives, homogeneous to plain coordinates.
-    #[inline(always)]
-    fn jet(&self, sums: &[Homogeneous; 6], order: u32) -> Option<Jet> {
-        let scale = |h: &Homogeneous, factor: usize| {
-            let v = V3::bits([h[0], h[1], h[2]], -self.bits);
-            if factor == 1 { v } else { v * Real::int(factor as i64) }
-        };
+    /// What turns differences by u, v, uu, uv, vv to derivatives.
+    fn factors(&self) -> [usize; 5] {
         let (m, h) = self.degrees;
         let mixed = if self.triangle { m * (m - 1) } else { m * h };
-        let factors = [m, h, m * (m - 1), mixed, h * (h - 1)];
-        let value = &sums[0];
-        if !self.rational {
-            let shift = POINT_BITS - self.bits;
-            let point = [value[0], value[1], value[2]].map(|c| c.wrapping_shl(shift as u32));
-            let mut jet = Jet { point, first: [V3::ZERO; 2], second: [V3::ZERO; 3] };
-            if order >= 1 {
-                jet.first = [scale(&sums[1], factors[0]), scale(&sums[2], factors[1])];
-            }
-            if order >= 2 {
-                jet.second = [scale(&sums[3], factors[2]), scale(&sums[4], factors[3]), scale(&sums[5], factors[4])];
-            }
-            return Some(jet);
+        [m, h, m * (m - 1), mixed, h * (h - 1)]
+    }
+
+    /// A sum as a vector, times a factor.
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
+    #[cfg_attr(not(target_pointer_width = "32"), inline(always))]
+    fn scaled(&self, sum: &Homogeneous, factor: usize) -> V3 {
+        let v = V3::bits([sum[0], sum[1], sum[2]], -self.bits);
+        if factor == 1 { v } else { v * Real::int(factor as i64) }
+    }
+
+    /// Differences to derivatives.
+    #[inline(always)]
+    fn plain(&self, sums: &[Homogeneous; 6], order: u32, jet: &mut Jet) {
+        let factors = self.factors();
+        let shift = POINT_BITS - self.bits;
+        jet.point = three!(|k| sums[0][k].wrapping_shl(shift as u32));
+        if order >= 1 {
+            jet.first = both!(|k| self.scaled(&sums[k + 1], factors[k]));
         }
-        if value[3] <= 0 {
+        if order >= 2 {
+            jet.second = three!(|k| self.scaled(&sums[k + 3], factors[k + 2]));
+        }
+    }
+
+    /// The same, homogeneous to plain coordinates.
+    #[inline(never)]
+    fn quotients(&self, sums: &[Homogeneous; 6], order: u32, jet: &mut Jet) -> Option<()> {
+        let factors = self.factors();
+        if sums[0][3] <= 0 {
             return None;
         }
-        let inverse = Real::ONE / Real::new(value[3], -self.bits);
+        let inverse = Real::ONE / Real::new(sums[0][3], -self.bits);
         let weight = |k: usize| Real::new(sums[k.min(5)][3], -self.bits) * Real::int(factors[(k - 1).min(4)] as i64);
-        let s = scale(value, 1) * inverse;
-        let mut jet = Jet { point: s.fixed(POINT_BITS), first: [V3::ZERO; 2], second: [V3::ZERO; 3] };
+        let s = self.scaled(&sums[0], 1) * inverse;
+        jet.point = s.fixed(POINT_BITS);
         if order >= 1 {
-            let slope = |k: usize| (scale(&sums[k.min(5)], factors[(k - 1).min(4)]) - s * weight(k)) * inverse;
-            jet.first = [slope(1), slope(2)];
+            jet.first = both!(|k| (self.scaled(&sums[k + 1], factors[k]) - s * weight(k + 1)) * inverse);
         }
         if order >= 2 {
             // Leibniz: (wS)'' = wS'' + 2w'S' + w''S, the mixed one by both.
+            let first = jet.first;
             let bend = |k: usize, a: usize, b: usize| {
-                let lower = jet.first[(a - 1) & 1] * weight(b) + jet.first[(b - 1) & 1] * weight(a);
-                (scale(&sums[k.min(5)], factors[(k - 1).min(4)]) - lower - s * weight(k)) * inverse
+                let lower = first[(a - 1) & 1] * weight(b) + first[(b - 1) & 1] * weight(a);
+                (self.scaled(&sums[k.min(5)], factors[(k - 1).min(4)]) - lower - s * weight(k)) * inverse
             };
             jet.second = [bend(3, 1, 1), bend(4, 1, 2), bend(5, 2, 2)];
         }
-        Some(jet)
+        Some(())
     }
 }
 
@@ -281,14 +325,15 @@ fn shifted(value: i64, shift: i32) -> i64 {
     if shift >= 0 { value << shift } else { crate::num::shift_half_up(value.into(), shift.unsigned_abs()) as i64 }
 }
 
-#[inline(always)]
-fn combine<const D: usize>(points: [&Homogeneous; 3], [u, v, w]: [i64; 3]) -> Homogeneous {
+/// The sum of points weighted by u, v, w, which sum to 1, rounded half up.
+#[cfg_attr(target_pointer_width = "32", inline(never))]
+#[cfg_attr(not(target_pointer_width = "32"), inline(always))]
+pub(super) fn combine<const D: usize>(points: [&Homogeneous; 3], place: Place) -> Homogeneous {
+    let [a, b, c] = points;
     let mut out = [0; 4];
     for k in 0..D {
-        let sum = i128::from(points[0][k]) * i128::from(u)
-            + i128::from(points[1][k]) * i128::from(v)
-            + i128::from(points[2][k]) * i128::from(w);
-        out[k] = ((sum + (1 << (PARAMETER_BITS - 1))) >> PARAMETER_BITS) as i64;
+        let along = [a[k].wrapping_sub(c[k]), b[k].wrapping_sub(c[k])];
+        out[k] = c[k].wrapping_add(products_half_up::<PARAMETER>(along, place));
     }
     out
 }

@@ -1,6 +1,6 @@
 //! From seeds to curves: borders, contacts, arms of branches, and every chain of the mesh that no curve covers yet.
 
-use super::certify::{self, Query, Report};
+use super::certify::{DEEPEST, Report, SHALLOW, Search};
 use super::chain::Chains;
 use super::contact::{Contact, Form};
 use super::curve::{Branch, Curve, CurveKind, CurvePoint, End};
@@ -44,6 +44,7 @@ fn border_of(edge: Edge, triangle: bool) -> usize {
 }
 
 /// The places of a crossing on both patches, and the point, linearly interpolated.
+#[inline(never)]
 fn begin(grids: [&Grid<'_>; 2], crossing: Crossing) -> (Places, [i64; 3]) {
     let side = usize::from(crossing.side) & 1;
     let (own, other) = (grids[side], grids[1 - side]);
@@ -81,14 +82,16 @@ fn on_pieces(points: &[CurvePoint], closed: bool, point: [i64; 3], slack: Real) 
         || last.is_some_and(|(p, q)| test(p, q))
 }
 
-impl Solver<'_, '_, '_> {
+impl<'s, 'a> Solver<'s, 'a, '_> {
     /// Whether a point lies on a curve that is known.
+    #[inline(never)]
     fn is_covered(&self, point: [i64; 3]) -> bool {
         let slack = self.tolerance.shl(3).max(self.pair.extent.shl(-26));
         self.out.finished().iter().any(|c| on_pieces(self.out.points_of(c), c.closed, point, slack))
     }
 
     /// Whether a singular spot is explained by a branch, a touching point or a curve of contact within some cells.
+    #[inline(never)]
     fn is_explained(&self, point: [i64; 3]) -> bool {
         let slack = self.cell.shl(2);
         let close = |x: [i64; 3]| difference(x, point).norm() <= slack;
@@ -101,6 +104,7 @@ impl Solver<'_, '_, '_> {
     }
 
     /// Whether a curve of contact passes within a distance of a point.
+    #[inline(never)]
     fn touches_near(&self, point: [i64; 3], reach: Real) -> bool {
         use CurveKind::{EdgeOnSurface, OverlapRegion, SharedEdge, SharedEdgeTangential, Tangential};
         let kinds = |c: &Curve| match c.kind {
@@ -144,40 +148,41 @@ impl Solver<'_, '_, '_> {
 
     /// The tangency on a border next to the spot where a walk was lost, with the walk's tangent: a curve that ends on an edge
     /// along which the surfaces meet.
+    #[inline(never)]
     fn tangency_on_border(&self, spot: &Spot) -> Option<Spot> {
-        let near = self.pair.extent.shl(-16);
-        let contact = self.pair.critical(spot.at, near)?;
+        let mut contact = Contact::BLANK;
+        self.pair.critical(&mut contact, spot.at, self.pair.extent.shl(-16))?;
         let last = contact.spot(self.pair);
         let sound = contact.apart.norm() <= self.pair.touching() && self.pair.end(last.at) != End::Lost;
         sound.then_some(Spot { tangent: spot.tangent, rates: spot.rates, ..last })
     }
 
     /// Follows the curve through a spot in both directions and enters it.
-    pub(super) fn follow(&mut self, locus: Locus, seed: Spot) -> Result<(), IntersectError> {
+    #[inline(never)]
+    pub(super) fn follow(&mut self, locus: Locus, seed: &Spot) -> Result<(), IntersectError> {
         let (open, closed) = match locus {
             Locus::Crossing => (CurveKind::Open, CurveKind::Closed),
             _ => (CurveKind::Tangential, CurveKind::Tangential),
         };
         let first = self.out.used;
-        let (ahead, behind) = (seed.oriented(true), seed.oriented(false));
+        let (pair, tolerance) = (self.pair, self.tolerance);
         // Curves that cut off next to nothing are shorter than the first share.
-        let inside = |shift| [self.leads_inside(&ahead, shift), self.leads_inside(&behind, shift)];
-        let [forward, backward] = [14, 20, 26].map(inside).into_iter().find(|i| i[0] || i[1]).unwrap_or([false; 2]);
-        let pair = self.pair;
-        let tracer = |forward| Tracer { pair, locus, forward, tolerance: self.tolerance };
-        let (one, two) = (tracer(true), tracer(false));
-        if !forward && !backward {
-            return self.touch(&seed);
+        let inside = |shift| [true, false].map(|forward| self.leads_inside(&seed.oriented(forward), shift));
+        let ways = [14, 20, 26].map(inside).into_iter().find(|i| *i != [false; 2]).unwrap_or([false; 2]);
+        let tracer = |forward| Tracer { pair, locus, forward, tolerance };
+        if ways == [false; 2] {
+            return self.touch(seed);
         }
-        let (walker, start, back) = if forward { (one, ahead, behind) } else { (two, behind, ahead) };
-        self.out.emit(&start)?;
-        let (stop, spot) = walker.walk(&mut self.out, start, Some(&start))?;
+        let forward = ways[0];
+        let mut spot = seed.oriented(forward);
+        self.out.emit(&spot)?;
+        let begin = pair.end(spot.at);
+        let stop = tracer(forward).walk(&mut self.out, &mut spot, Some(&seed.oriented(forward)))?;
         if stop == Stop::Closed {
             return self.out.finish(closed, true, [End::None; 2], first);
         }
         let last = self.stop(stop, &spot)?;
-        if !(forward && backward) {
-            let begin = pair.end(start.at);
+        if ways != [true; 2] {
             return self.out.finish(open, false, [begin, last], first);
         }
         if let Some(points) = self.out.points.get_mut(first..self.out.used) {
@@ -190,7 +195,8 @@ impl Solver<'_, '_, '_> {
         }
         // A closed curve that was lost comes back to where that was.
         let lost = (stop == Stop::Lost).then(|| spot.oriented(false));
-        let (stop, spot) = if forward { &two } else { &one }.walk(&mut self.out, back, lost.as_ref())?;
+        spot = seed.oriented(!forward);
+        let stop = tracer(!forward).walk(&mut self.out, &mut spot, lost.as_ref())?;
         if stop == Stop::Closed {
             return self.out.finish(closed, true, [End::None; 2], first);
         }
@@ -199,49 +205,80 @@ impl Solver<'_, '_, '_> {
     }
 
     /// Runs the loop-free test and enters what its contacts are: touching points, tangential curves, branches.
-    pub(super) fn contacts(&mut self, budget: u32) -> Result<Report, IntersectError> {
-        let mut failure = Ok(());
-        let pair = self.pair;
-        let report = certify::test(pair, budget, |query| {
-            let contact = match query {
-                Query::Contact(contact) => contact,
-                Query::Near(point, reach) => return self.touches_near(point, reach),
-            };
-            let spot = contact.spot(pair);
-            if self.is_covered(spot.point) {
-                return true;
-            }
-            if contact.form() != Form::Ridge || failure.is_err() {
-                return false;
-            }
-            let count = self.out.curve_count;
-            failure = self.follow(Locus::Ridge, spot);
-            // A ridge that is level at one point only is no curve.
-            let short =
-                self.out.finished().last().is_some_and(|c| c.ends == [End::Lost; 2] && c.length < self.cell_bits());
-            if self.out.curve_count > count && short {
-                self.out.curve_count = count;
-                self.out.used = self.out.curves.get(count).map_or(self.out.used, |c| c.first);
-                self.out.unrefined = 0;
-                return false;
-            }
-            true
-        });
-        failure?;
+    #[inline(never)]
+    pub(super) fn contacts(&mut self, budget: u32, report: &mut Report) -> Result<(), IntersectError> {
+        self.test(budget, report)?;
         self.undecided = self.undecided.saturating_add(report.undecided);
         for found in report.list().filter(|f| f.touches) {
-            let Some(contact) = Contact::new(pair, found.at) else { continue };
-            let spot = contact.spot(pair);
-            if self.is_covered(spot.point) {
-                continue;
-            }
             match found.form {
-                Form::Saddle => self.branch(&contact)?,
-                Form::Definite => self.touch(&spot)?,
-                Form::Ridge | Form::Flat => self.undecided += 1,
+                Form::Saddle => self.branch(found.at)?,
+                Form::Definite => self.touch_at(found.at)?,
+                Form::Ridge | Form::Flat => {
+                    let known = self.contact_spot(found.at).is_none_or(|spot| self.is_covered(spot.point));
+                    self.undecided += u32::from(!known);
+                }
             }
         }
-        Ok(report)
+        Ok(())
+    }
+
+    #[inline(never)]
+    fn test(&mut self, budget: u32, report: &mut Report) -> Result<(), IntersectError> {
+        for (deepest, budget) in [(SHALLOW, budget / 2), (DEEPEST, budget)] {
+            report.undecided = 0;
+            let mut search = Search::new(self.pair, deepest);
+            let mut known = false;
+            while let Some(at) = search.run(report, budget, known, |point, reach| self.touches_near(point, reach)) {
+                known = self.is_on_ridge(at)?;
+            }
+            if report.undecided == 0 {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// The spot of a contact.
+    #[inline(never)]
+    fn contact_spot(&self, at: Places) -> Option<Spot> {
+        Some(Contact::new(self.pair, at)?.spot(self.pair))
+    }
+
+    #[inline(never)]
+    fn contact_form(&self, at: Places) -> Option<Form> {
+        Some(Contact::new(self.pair, at)?.form())
+    }
+
+    /// Whether a contact lies on a curve that is known, after following the curve along which the surfaces touch there.
+    #[inline(never)]
+    fn is_on_ridge(&mut self, at: Places) -> Result<bool, IntersectError> {
+        let Some(spot) = self.contact_spot(at) else { return Ok(false) };
+        if self.is_covered(spot.point) {
+            return Ok(true);
+        }
+        if self.contact_form(at) != Some(Form::Ridge) {
+            return Ok(false);
+        }
+        let count = self.out.curve_count;
+        self.follow(Locus::Ridge, &spot)?;
+        // A ridge that is level at one point only is no curve.
+        let short = self.out.finished().last().is_some_and(|c| c.ends == [End::Lost; 2] && c.length < self.cell_bits());
+        if self.out.curve_count > count && short {
+            self.out.curve_count = count;
+            self.out.used = self.out.curves.get(count).map_or(self.out.used, |c| c.first);
+            self.out.unrefined = 0;
+            return Ok(false);
+        }
+        Ok(true)
+    }
+
+    /// Enters a touching point unless a curve passes there.
+    #[inline(never)]
+    fn touch_at(&mut self, at: Places) -> Result<(), IntersectError> {
+        match self.contact_spot(at) {
+            Some(spot) if !self.is_covered(spot.point) => self.touch(&spot),
+            _ => Ok(()),
+        }
     }
 
     /// Enters a touching point.
@@ -252,10 +289,11 @@ impl Solver<'_, '_, '_> {
     }
 
     /// Enters contacts of a higher order that no curve reached: touching points, as far as can be told.
+    #[inline(never)]
     pub(super) fn leftovers(&mut self, report: &Report) -> Result<(), IntersectError> {
         for found in report.list().filter(|f| f.touches && matches!(f.form, Form::Ridge | Form::Flat)) {
-            let Some(contact) = Contact::new(self.pair, found.at) else { continue };
-            let (spot, slack) = (contact.spot(self.pair), self.cell.shl(-1));
+            let Some(spot) = self.contact_spot(found.at) else { continue };
+            let slack = self.cell.shl(-1);
             let near = |c: &Curve| on_pieces(self.out.points_of(c), c.closed, spot.point, slack);
             if !self.out.finished().iter().any(near) {
                 self.touch(&spot)?;
@@ -269,8 +307,9 @@ impl Solver<'_, '_, '_> {
     }
 
     /// The first spot of an arm, with the tangent away from the branch; `None` where the arm lies outside a patch.
+    #[inline(never)]
     fn arm(&self, contact: &Contact, direction: V3) -> Option<(Spot, bool)> {
-        let point = contact.spot(self.pair).point;
+        let point = contact.point();
         let rates = contact.rates(direction);
         // Not past a branch next to it.
         let others = self.out.branches().iter().map(|b| difference(b.point.bits(), point).norm());
@@ -299,11 +338,16 @@ impl Solver<'_, '_, '_> {
         None
     }
 
-    /// Enters a branch with its arms.
-    fn branch(&mut self, contact: &Contact) -> Result<(), IntersectError> {
+    /// Enters a branch with its arms, unless a curve passes there.
+    #[inline(never)]
+    fn branch(&mut self, at: Places) -> Result<(), IntersectError> {
+        let Some(contact) = Contact::new(self.pair, at) else { return Ok(()) };
+        let mut spot = contact.spot(self.pair);
+        if self.is_covered(spot.point) {
+            return Ok(());
+        }
         let directions = contact.arms();
         let unit = |c: Real| I2F30::from_bits(c.nearest(30).clamp(-1 << 30, 1 << 30) as i32);
-        let mut spot = contact.spot(self.pair);
         spot.tangent = directions[0];
         let branch = Branch {
             point: CurvePoint::of(&spot),
@@ -318,6 +362,7 @@ impl Solver<'_, '_, '_> {
     }
 
     /// Looks which arms of the branches there are; those on a curve that is known are taken.
+    #[inline(never)]
     fn look_at_arms(&mut self) {
         for b in 0..self.out.branch_count {
             let Some(branch) = self.out.branches.get(b).copied() else { continue };
@@ -333,38 +378,53 @@ impl Solver<'_, '_, '_> {
     }
 
     /// Follows the arms of all branches.
+    #[inline(never)]
     pub(super) fn arms(&mut self) -> Result<(), IntersectError> {
         self.look_at_arms();
         for b in 0..self.out.branch_count {
-            let Some(branch) = self.out.branches.get(b).copied() else { continue };
-            let Some(contact) = Contact::new(self.pair, branch.point.places()) else { continue };
             for k in 0..4 {
                 let free = self.out.branches.get(b).is_some_and(|now| now.present[k] && !now.taken[k]);
                 if !free {
                     continue;
                 }
-                let direction = branch.direction(k);
-                let Some((spot, forward)) = self.arm(&contact, direction) else { continue };
                 let first = self.out.used;
-                let mut origin = contact.spot(self.pair);
-                (origin.tangent, origin.rates) = (direction, contact.rates(direction));
-                origin.point = branch.point.bits();
-                self.out.emit(&origin)?;
-                let pair = self.pair;
-                let tracer = Tracer { pair, locus: Locus::Crossing, forward, tolerance: self.tolerance };
-                tracer.connect(&mut self.out, &origin, &spot, true)?;
+                let Some((mut spot, tracer)) = self.start(b, k)? else { continue };
                 if let Some(branch) = self.out.branches.get_mut(b) {
                     branch.taken[k] = true;
                 }
-                let (stop, last) = tracer.walk(&mut self.out, spot, None)?;
-                let end = self.stop(stop, &last)?;
+                let stop = tracer.walk(&mut self.out, &mut spot, None)?;
+                let end = self.stop(stop, &spot)?;
                 self.out.finish(CurveKind::Open, false, [End::Branch { branch: b as u16 }, end], first)?;
             }
         }
         Ok(())
     }
 
+    /// Writes the first piece of an arm: its last spot, and how to go on.
+    #[inline(never)]
+    fn start(&mut self, b: usize, arm: usize) -> Result<Option<(Spot, Tracer<'s, 'a>)>, IntersectError> {
+        let Some((origin, spot, forward)) = self.piece_of_arm(b, arm) else { return Ok(None) };
+        self.out.emit(&origin)?;
+        let tracer = Tracer { pair: self.pair, locus: Locus::Crossing, forward, tolerance: self.tolerance };
+        tracer.connect(&mut self.out, &origin, &spot, true)?;
+        Ok(Some((spot, tracer)))
+    }
+
+    /// Both ends of an arm's first piece.
+    #[inline(never)]
+    fn piece_of_arm(&self, b: usize, arm: usize) -> Option<(Spot, Spot, bool)> {
+        let branch = self.out.branches.get(b)?;
+        let contact = Contact::new(self.pair, branch.point.places())?;
+        let direction = branch.direction(arm);
+        let (spot, forward) = self.arm(&contact, direction)?;
+        let mut origin = contact.spot(self.pair);
+        (origin.tangent, origin.rates) = (direction, contact.rates(direction));
+        origin.point = branch.point.bits();
+        Some((origin, spot, forward))
+    }
+
     /// Follows curves from where the mesh crosses a border.
+    #[inline(never)]
     pub(super) fn borders(&mut self, grids: [&Grid<'_>; 2], chains: &mut Chains<'_>) -> Result<(), IntersectError> {
         let mut from = 0;
         while let Some(start) = chains.next_start(true, &mut from) {
@@ -394,10 +454,11 @@ impl Solver<'_, '_, '_> {
         if !near || !self.pair.inside(spot.at, BORDER) || self.is_covered(spot.point) {
             return Ok(());
         }
-        self.follow(Locus::Crossing, spot)
+        self.follow(Locus::Crossing, &spot)
     }
 
     /// Follows curves from crossings of chains that no curve covers.
+    #[inline(never)]
     pub(super) fn chains(&mut self, grids: [&Grid<'_>; 2], chains: &mut Chains<'_>) -> Result<(), IntersectError> {
         for open in [true, false] {
             let mut from = 0;
@@ -417,6 +478,7 @@ impl Solver<'_, '_, '_> {
     }
 
     /// Makes sure that a crossing's curve is known; false if that cannot be told.
+    #[inline(never)]
     fn cross(&mut self, grids: [&Grid<'_>; 2], crossing: Crossing) -> Result<bool, IntersectError> {
         let (at, point) = begin(grids, crossing);
         let Some(spot) = self.pair.nearest(at).filter(|s| s.sine > SINGULAR) else {
@@ -429,30 +491,34 @@ impl Solver<'_, '_, '_> {
         if spot.sine < Real::power(-10) && self.is_explained(spot.point) {
             return Ok(true);
         }
-        self.follow(Locus::Crossing, spot)?;
+        self.follow(Locus::Crossing, &spot)?;
         Ok(true)
     }
 
     /// Follows small curves round contacts at a distance, which a mesh may miss.
+    #[inline(never)]
     pub(super) fn around(&mut self, report: &Report) -> Result<(), IntersectError> {
         for found in report.list().filter(|f| !f.touches) {
-            let Some(contact) = Contact::new(self.pair, found.at) else { continue };
-            for k in 0..2 {
-                let curvature = contact.curvatures[k];
-                let square = -(contact.gap.shl(1)) / curvature;
-                if !square.is_positive() || square > self.cell.square().shl(8) {
-                    continue;
-                }
-                for sign in [Real::ONE, -Real::ONE] {
-                    let direction = contact.axes[k];
-                    let at = Pair::followed(contact.at, &contact.rates(direction), square.sqrt() * sign);
-                    let Some(spot) = self.pair.nearest(at).filter(|s| s.sine > SINGULAR) else { continue };
-                    if self.pair.inside(spot.at, 0) && !self.is_covered(spot.point) {
-                        self.follow(Locus::Crossing, spot)?;
-                    }
+            for k in 0..4 {
+                let Some(at) = self.beside(found.at, k >> 1, k & 1 == 0) else { continue };
+                let Some(spot) = self.pair.nearest(at).filter(|s| s.sine > SINGULAR) else { continue };
+                if self.pair.inside(spot.at, 0) && !self.is_covered(spot.point) {
+                    self.follow(Locus::Crossing, &spot)?;
                 }
             }
         }
         Ok(())
+    }
+
+    /// Where a small curve round a contact would pass its axis `k`, on either side.
+    #[inline(never)]
+    fn beside(&self, at: Places, k: usize, ahead: bool) -> Option<Places> {
+        let contact = Contact::new(self.pair, at)?;
+        let square = -(contact.gap.shl(1)) / contact.curvatures[k & 1];
+        if !square.is_positive() || square > self.cell.square().shl(8) {
+            return None;
+        }
+        let by = square.sqrt() * if ahead { Real::ONE } else { -Real::ONE };
+        Some(Pair::followed(contact.at, &contact.rates(contact.axes[k & 1]), by))
     }
 }

@@ -7,7 +7,7 @@ use super::contact::Contact;
 use super::curve::{Branch, Curve, CurvePoint, End};
 use super::hermite::Piece;
 use super::newton::{Pair, Places, Spot, difference, moved, shifted};
-use super::sheet::{ONE, Place};
+use super::sheet::{Jet, ONE, Place};
 use super::vector::V3;
 use super::{Buffer, IntersectError};
 use crate::num::Real;
@@ -43,6 +43,7 @@ pub(super) struct Output<'b> {
 }
 
 impl Output<'_> {
+    #[inline(never)]
     pub(super) fn emit(&mut self, spot: &Spot) -> Result<(), IntersectError> {
         let given = self.points.len();
         let full = IntersectError::Buffer { buffer: Buffer::Points, needed: given + 1, given };
@@ -103,6 +104,7 @@ pub(super) enum Stop {
 
 impl Tracer<'_, '_> {
     /// The point of the locus in the plane through `c` with normal `plane`, near `at`.
+    #[inline(never)]
     fn solve(&self, at: Places, c: [i64; 3], plane: V3) -> Option<Spot> {
         match self.locus {
             Locus::Crossing => Some(self.pair.in_plane(at, c, plane)?.oriented(self.forward)),
@@ -112,6 +114,7 @@ impl Tracer<'_, '_> {
     }
 
     /// A point of the locus about halfway between two, with its tangent along the chord.
+    #[inline(never)]
     fn between(&self, p: &Spot, q: &Spot, piece: &Piece) -> Option<Spot> {
         if let Locus::Edge { side, edge } = self.locus {
             let sheet = &self.pair.sheets[side & 1];
@@ -166,6 +169,7 @@ impl Tracer<'_, '_> {
     }
 
     /// The next spot along the tangent, if the curve does not turn too much on the way.
+    #[inline(never)]
     fn advance(&self, p: &Spot, h: Real, before: Option<&Spot>) -> Option<Spot> {
         let mut at = Pair::followed(p.at, &p.rates, h);
         if let Some(before) = before {
@@ -191,6 +195,7 @@ impl Tracer<'_, '_> {
     }
 
     /// Emits the piece to a target on the curve; false if it would have to be halved.
+    #[inline(never)]
     fn join(&self, out: &mut Output<'_>, p: &Spot, target: &Spot, with_last: bool) -> Result<bool, IntersectError> {
         let piece = Piece::new(p, target);
         if piece.arc() > self.pair.extent.shl(-18) {
@@ -207,6 +212,7 @@ impl Tracer<'_, '_> {
     }
 
     /// The branch ahead within `reach`: its index, the arm on which the curve comes, the spot there, the distance.
+    #[inline(never)]
     fn branch_ahead(&self, out: &Output<'_>, p: &Spot, reach: Real) -> Option<(usize, usize, Spot, Real)> {
         for (b, branch) in out.branches().iter().enumerate() {
             let Some(distance) = Self::ahead(p, branch.point.bits(), reach) else { continue };
@@ -225,109 +231,144 @@ impl Tracer<'_, '_> {
         None
     }
 
-    /// Walks from a spot that is emitted already, emitting what follows. `origin`: where the curve began, to close it.
+    /// Ends a walk in the branch ahead, if there is one within two steps and the piece to it will do; else shortens the step.
+    #[inline(never)]
+    fn end_in_branch(&self, out: &mut Output<'_>, p: &mut Spot, h: &mut Real) -> Result<Option<Stop>, IntersectError> {
+        // Where the walk leads away from a branch, that branch is behind: `ahead` looks forward only.
+        let Some((b, arm, spot, distance)) = self.branch_ahead(out, p, h.shl(1)) else { return Ok(None) };
+        if self.join(out, p, &spot, true)? || distance <= self.pair.extent.shl(-24) {
+            if let Some(branch) = out.branches.get_mut(b) {
+                branch.taken[arm & 3] = true;
+            }
+            *p = spot;
+            return Ok(Some(Stop::Branch(b)));
+        }
+        *h = (*h).min(distance.shl(-1));
+        Ok(None)
+    }
+
+    /// Ends a walk on the border between a spot inside and one outside, if the piece to it will do: whether it did, or `None`
+    /// where there is no border between.
+    #[inline(never)]
+    fn end_on_border(
+        &self,
+        out: &mut Output<'_>,
+        p: &mut Spot,
+        q: &Spot,
+        is_start: bool,
+        small: bool,
+    ) -> Result<Option<bool>, IntersectError> {
+        let Some(end) = self.leave(p, q) else { return Ok(None) };
+        let moves = difference(end.point, p.point).norm() > self.shortest().shl(6);
+        // Without a move it is the border where the curve began: it leaves again within the step.
+        let done = if moves { self.join(out, p, &end, true)? || small } else { !is_start || small };
+        if done {
+            *p = end;
+        }
+        Ok(Some(done))
+    }
+
+    /// Writes the middle of the first piece and its end if the piece will do: the middle.
+    #[inline(never)]
+    fn first_piece(&self, out: &mut Output<'_>, p: &Spot, q: &Spot) -> Result<Option<Spot>, IntersectError> {
+        let piece = Piece::new(p, q);
+        let middle = self.between(p, q, &piece).filter(|spot| piece.error(spot.point) <= self.tolerance.shl(3));
+        if let Some(spot) = &middle {
+            out.emit(spot)?;
+            out.emit(q)?;
+        }
+        Ok(middle)
+    }
+
+    /// The error of either of the pieces between three spots, and the arc of the first.
+    #[inline(never)]
+    fn error(b: &Spot, p: &Spot, q: &Spot) -> (Real, Real) {
+        let [one, two] = [Piece::new(b, p).arc(), Piece::new(p, q).arc()];
+        let share = one.max(two) / (one + two);
+        (Piece::new(b, q).error(p.point) * share.square().square(), one)
+    }
+
+    /// The shortest step.
+    fn shortest(&self) -> Real {
+        self.pair.extent.shl(-32)
+    }
+
+    /// Walks from a spot that is emitted already, emitting what follows; `p` becomes the last spot, but for a closed curve.
+    /// `origin`: where the curve began, to close it.
     #[inline(never)]
     pub(super) fn walk(
         &self,
         out: &mut Output<'_>,
-        start: Spot,
+        p: &mut Spot,
         origin: Option<&Spot>,
-    ) -> Result<(Stop, Spot), IntersectError> {
+    ) -> Result<Stop, IntersectError> {
         let longest = self.pair.extent.shl(-2);
-        let shortest = self.pair.extent.shl(-32);
+        let shortest = self.shortest();
         let mut h = self.pair.extent.shl(-6);
-        let (mut p, mut before) = (start, None);
+        let mut before: Option<Spot> = None;
         let mut steps = 0_u32;
-        // Where the walk leads away from a branch, that branch is behind: `ahead` looks forward only.
         loop {
-            if let Some((b, arm, spot, distance)) = self.branch_ahead(out, &p, h.shl(1)) {
-                if self.join(out, &p, &spot, true)? || distance <= self.pair.extent.shl(-24) {
-                    if let Some(branch) = out.branches.get_mut(b) {
-                        branch.taken[arm & 3] = true;
-                    }
-                    return Ok((Stop::Branch(b), spot));
-                }
-                h = h.min(distance.shl(-1));
+            if let Some(stop) = self.end_in_branch(out, p, &mut h)? {
+                return Ok(stop);
             }
             let home = origin.filter(|o| steps >= 3 && p.tangent.dot(o.tangent) > Real::power(-1));
-            let ahead = home.and_then(|o| Some((o, Self::ahead(&p, o.point, h + h.shl(-1))?)));
+            let ahead = home.and_then(|o| Some((o, Self::ahead(p, o.point, h + h.shl(-1))?)));
             if let Some((origin, distance)) = ahead {
-                if self.join(out, &p, origin, false)? {
-                    return Ok((Stop::Closed, *origin));
+                if self.join(out, p, origin, false)? {
+                    return Ok(Stop::Closed);
                 }
                 h = h.min(distance.shl(-1));
             }
             if h < shortest {
-                return Ok((Stop::Lost, p));
+                return Ok(Stop::Lost);
             }
-            let Some(q) = self.advance(&p, h, before.as_ref()) else {
+            let Some(q) = self.advance(p, h, before.as_ref()) else {
                 h = h.shl(-1);
                 continue;
             };
             if !self.pair.inside(q.at, 0) {
-                if let Some(end) = self.leave(&p, &q) {
-                    let moves = difference(end.point, p.point).norm() > shortest.shl(6);
-                    let small = h < shortest.shl(8);
-                    // Without a move it is the border where the curve began: it leaves again within the step.
-                    if if moves { self.join(out, &p, &end, true)? || small } else { steps > 0 || small } {
-                        return Ok((Stop::Border, end));
+                match self.end_on_border(out, p, &q, steps == 0, h < shortest.shl(8))? {
+                    Some(true) => return Ok(Stop::Border),
+                    None if !self.pair.inside(p.at, 4) && h <= shortest.shl(8) => return Ok(Stop::Lost),
+                    _ => h = h.shl(-1),
+                }
+                continue;
+            }
+            if let Some(b) = &before {
+                let (error, one) = Self::error(b, p, &q);
+                let allowed = self.tolerance.shl(-1);
+                if error > allowed {
+                    h = h.shl(-1);
+                    if h.shl(1) < one {
+                        // What is behind was judged already: from here the next piece is judged alone.
+                        before = None;
                     }
+                    continue;
+                }
+                out.emit(&q)?;
+                before = Some(*p);
+                if error.shl(5) < allowed {
+                    h = h.shl(1);
+                } else if error.shl(1) < allowed {
+                    h = h + h.shl(-3);
+                } else {
+                    h = h - h.shl(-4);
+                }
+                h = h.min(longest);
+            } else {
+                before = self.first_piece(out, p, &q)?;
+                if before.is_none() {
                     h = h.shl(-1);
                     continue;
                 }
-                if self.pair.inside(p.at, 4) || h > shortest.shl(8) {
-                    h = h.shl(-1);
-                    continue;
-                }
-                return Ok((Stop::Lost, p));
             }
-            match before {
-                None => {
-                    let piece = Piece::new(&p, &q);
-                    let spot = self.between(&p, &q, &piece);
-                    match spot.filter(|spot| piece.error(spot.point) <= self.tolerance.shl(3)) {
-                        Some(spot) => {
-                            out.emit(&spot)?;
-                            out.emit(&q)?;
-                            before = Some(spot);
-                        }
-                        None => {
-                            h = h.shl(-1);
-                            continue;
-                        }
-                    }
-                }
-                Some(b) => {
-                    let [one, two] = [Piece::new(&b, &p).arc(), Piece::new(&p, &q).arc()];
-                    let share = one.max(two) / (one + two);
-                    let error = Piece::new(&b, &q).error(p.point) * share.square().square();
-                    let allowed = self.tolerance.shl(-1);
-                    if error > allowed {
-                        h = h.shl(-1);
-                        if h.shl(1) < one {
-                            // What is behind was judged already: from here the next piece is judged alone.
-                            before = None;
-                        }
-                        continue;
-                    }
-                    out.emit(&q)?;
-                    before = Some(p);
-                    if error.shl(5) < allowed {
-                        h = h.shl(1);
-                    } else if error.shl(1) < allowed {
-                        h = h + h.shl(-3);
-                    } else {
-                        h = h - h.shl(-4);
-                    }
-                    h = h.min(longest);
-                }
-            }
-            p = q;
+            *p = q;
             steps += 1;
         }
     }
 
     /// Where the curve from a spot inside to one outside leaves the domain of either patch.
+    #[inline(never)]
     fn leave(&self, p: &Spot, q: &Spot) -> Option<Spot> {
         let slack = BORDER;
         let mut best: Option<(Real, Spot)> = None;
@@ -360,6 +401,7 @@ impl Tracer<'_, '_> {
     }
 
     /// The same along a ridge, by halving: a ridge has no simple equation with an edge.
+    #[inline(never)]
     fn ridge_on_edge(&self, side: usize, edge: usize, p: &Spot, q: &Spot) -> Option<Spot> {
         let sheet = &self.pair.sheets[side];
         let (mut low, mut high) = (*p, *q);
@@ -385,16 +427,17 @@ impl Tracer<'_, '_> {
 
 impl Pair<'_> {
     /// The spot of an edge's parameter, with its foot on the other patch searched from `near`; the tangent is the edge's.
+    #[inline(never)]
     pub(super) fn edge_spot(&self, side: usize, edge: usize, parameter: i64, near: Place) -> Option<Spot> {
         let (one, other) = (side & 1, 1 - (side & 1));
         let sheet = &self.sheets[one];
-        let place = sheet.edge_place(edge, parameter);
-        let jet = sheet.eval(place, 1)?;
-        let (foot, under) = self.foot(other, near, jet.point)?;
+        let mut jets = [Jet::BLANK; 2];
+        let mut at = [sheet.edge_place(edge, parameter); 2];
+        sheet.eval_to(at[one], 1, &mut jets[one])?;
+        at[other] = self.foot_to(other, near, jets[one].point, &mut jets[other])?;
         let [a, b] = sheet.edge_direction(edge).map(Real::int);
-        let (at, jets) = if one == 0 { ([place, foot], [jet, under]) } else { ([foot, place], [under, jet]) };
         let mut spot = self.spot(at, &jets);
-        spot.tangent = (jet.first[0] * a + jet.first[1] * b).unit();
+        spot.tangent = (jets[one].first[0] * a + jets[one].first[1] * b).unit();
         spot.rates = both!(|s| super::newton::pull_back(&jets[s].first, jets[s].normal(), spot.tangent));
         Some(spot)
     }

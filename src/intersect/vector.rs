@@ -1,4 +1,6 @@
 //! Vectors of [`Real`].
+//!
+//! What consists of several operations is a call on targets of 32 bits, by reference: copies of vectors would fill the stack.
 
 use crate::num::Real;
 use core::ops::{Add, Mul, Neg, Sub};
@@ -7,37 +9,68 @@ use core::ops::{Add, Mul, Neg, Sub};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct V3(pub(super) [Real; 3]);
 
+#[cfg_attr(target_pointer_width = "32", inline(never))]
+#[cfg_attr(not(target_pointer_width = "32"), inline(always))]
+fn dot([a, b, c]: &[Real; 3], [x, y, z]: &[Real; 3]) -> Real {
+    *a * *x + *b * *y + *c * *z
+}
+
+#[cfg_attr(target_pointer_width = "32", inline(never))]
+#[cfg_attr(not(target_pointer_width = "32"), inline(always))]
+fn cross([a, b, c]: &[Real; 3], [x, y, z]: &[Real; 3]) -> V3 {
+    V3([*b * *z - *c * *y, *c * *x - *a * *z, *a * *y - *b * *x])
+}
+
+#[cfg_attr(target_pointer_width = "32", inline(never))]
+#[cfg_attr(not(target_pointer_width = "32"), inline(always))]
+fn sum([a, b, c]: &[Real; 3], [x, y, z]: &[Real; 3]) -> V3 {
+    V3([*a + *x, *b + *y, *c + *z])
+}
+
+#[cfg_attr(target_pointer_width = "32", inline(never))]
+#[cfg_attr(not(target_pointer_width = "32"), inline(always))]
+fn minus([a, b, c]: &[Real; 3], [x, y, z]: &[Real; 3]) -> V3 {
+    V3([*a - *x, *b - *y, *c - *z])
+}
+
+#[cfg_attr(target_pointer_width = "32", inline(never))]
+#[cfg_attr(not(target_pointer_width = "32"), inline(always))]
+fn times([x, y, z]: &[Real; 3], factor: Real) -> V3 {
+    V3([*x * factor, *y * factor, *z * factor])
+}
+
 impl V3 {
     pub(super) const ZERO: Self = Self([Real::ZERO; 3]);
 
     /// Integers in units of 2^`exponent`.
-    #[inline(always)]
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
+    #[cfg_attr(not(target_pointer_width = "32"), inline(always))]
     pub(super) const fn bits([x, y, z]: [i64; 3], exponent: i32) -> Self {
         Self([Real::new(x, exponent), Real::new(y, exponent), Real::new(z, exponent)])
     }
 
     #[inline(always)]
     pub(super) fn dot(self, other: Self) -> Real {
-        let ([a, b, c], [x, y, z]) = (self.0, other.0);
-        a * x + b * y + c * z
+        dot(&self.0, &other.0)
     }
 
     #[inline(always)]
     pub(super) fn cross(self, other: Self) -> Self {
-        let ([a, b, c], [x, y, z]) = (self.0, other.0);
-        Self([b * z - c * y, c * x - a * z, a * y - b * x])
+        cross(&self.0, &other.0)
     }
 
     #[inline(always)]
     pub(super) fn square(self) -> Real {
-        self.dot(self)
+        dot(&self.0, &self.0)
     }
 
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
     pub(super) fn norm(self) -> Real {
         self.square().sqrt()
     }
 
     /// The unit vector; zero for zero.
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
     pub(super) fn unit(self) -> Self {
         self * (Real::ONE / self.norm())
     }
@@ -52,6 +85,7 @@ impl V3 {
     }
 
     /// Fixed-point components, half up.
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
     pub(super) fn fixed(self, fraction_bits: i32) -> [i64; 3] {
         self.0.map(|c| c.nearest(fraction_bits))
     }
@@ -62,8 +96,7 @@ impl Add for V3 {
 
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        let ([a, b, c], [x, y, z]) = (self.0, other.0);
-        Self([a + x, b + y, c + z])
+        sum(&self.0, &other.0)
     }
 }
 
@@ -72,8 +105,7 @@ impl Sub for V3 {
 
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        let ([a, b, c], [x, y, z]) = (self.0, other.0);
-        Self([a - x, b - y, c - z])
+        minus(&self.0, &other.0)
     }
 }
 
@@ -92,7 +124,6 @@ impl Mul<Real> for V3 {
 
     #[inline(always)]
     fn mul(self, factor: Real) -> Self {
-        let [x, y, z] = self.0;
-        Self([x * factor, y * factor, z * factor])
+        times(&self.0, factor)
     }
 }

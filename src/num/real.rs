@@ -2,7 +2,10 @@
 //!
 //! A relative error of at most 2^-60 an operation, no overflow for exponents that geometry can reach, the same bits on
 //! every target. Only what intersection needs: sums, products, quotients, roots, comparisons.
+//!
+//! On targets of 32 bits an operation is a call: in place it would be 60 to 400 bytes of code, some thousand times.
 
+use super::round::{long_quotient, product_down};
 use core::cmp::Ordering;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -32,6 +35,7 @@ impl Real {
     }
 
     /// `value` · 2^`exponent`, rounded down to the mantissa.
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
     pub(crate) const fn wide(value: i128, exponent: i32) -> Self {
         let shift = 66 - value.unsigned_abs().leading_zeros() as i32;
         if shift > 0 { Self::new((value >> shift) as i64, exponent + shift) } else { Self::new(value as i64, exponent) }
@@ -76,6 +80,8 @@ impl Real {
     }
 
     /// Nearest fixed-point value, half up, or the end of the range of an `i64`.
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
+    #[cfg_attr(not(target_pointer_width = "32"), inline)]
     pub(crate) fn nearest(self, fraction_bits: i32) -> i64 {
         (self + Self::power(-fraction_bits - 1)).fixed(fraction_bits)
     }
@@ -97,15 +103,15 @@ impl Real {
     }
 
     /// The square root; 0 for what is not positive.
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
     pub(crate) fn sqrt(self) -> Self {
         if self.mantissa <= 0 {
             return Self::ZERO;
         }
-        // What is left of the exponent is even; the value has 122 to 124 bits.
+        // What is left of the exponent is even; the value, mantissa · 2^shift, has 122 to 124 bits.
         let odd = self.exponent & 1;
-        let value = (self.mantissa as u128) << (60 + odd);
         let exponent = self.exponent - 60 - odd;
-        Self::new(root(value) as i64, exponent >> 1)
+        Self::new(root(self.mantissa.unsigned_abs(), 60 + odd as u32) as i64, exponent >> 1)
     }
 
     pub(crate) fn min(self, other: Self) -> Self {
@@ -123,13 +129,12 @@ impl Real {
     }
 }
 
-/// The root of a number of 122 to 124 bits, to the last bit or two: the 32 upper bits by the root of 64 bits, the rest
-/// by a step of Newton's method.
-fn root(value: u128) -> u64 {
-    let first = ((value >> 62) as u64).isqrt();
-    let guess = u128::from(first) << 31;
-    let quotient = value.checked_div(guess).unwrap_or(0);
-    ((guess + quotient) >> 1) as u64
+/// The root of `value` · 2^`shift`, a number of 122 to 124 bits, to the last bit or two: the 32 upper bits by the root of
+/// 64 bits, the rest by a step of Newton's method.
+fn root(value: u64, shift: u32) -> u64 {
+    let first = (value >> (62 - shift)).isqrt();
+    let guess = first << 31;
+    (guess + long_quotient(value, guess, shift)) >> 1
 }
 
 impl Neg for Real {
@@ -144,7 +149,8 @@ impl Neg for Real {
 impl Add for Real {
     type Output = Self;
 
-    #[inline]
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
+    #[cfg_attr(not(target_pointer_width = "32"), inline)]
     fn add(self, other: Self) -> Self {
         if other.mantissa == 0 {
             return self;
@@ -173,10 +179,10 @@ impl Sub for Real {
 impl Mul for Real {
     type Output = Self;
 
-    #[inline]
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
+    #[cfg_attr(not(target_pointer_width = "32"), inline)]
     fn mul(self, other: Self) -> Self {
-        let product = (i128::from(self.mantissa) * i128::from(other.mantissa)) >> 62;
-        Self::new(product as i64, self.exponent + other.exponent + 62)
+        Self::new(product_down::<62>(self.mantissa, other.mantissa), self.exponent + other.exponent + 62)
     }
 }
 
@@ -184,10 +190,15 @@ impl Mul for Real {
 impl Div for Real {
     type Output = Self;
 
-    #[inline]
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
+    #[cfg_attr(not(target_pointer_width = "32"), inline)]
     fn div(self, other: Self) -> Self {
-        let quotient = (i128::from(self.mantissa) << 61).checked_div(i128::from(other.mantissa)).unwrap_or(0);
-        Self::new(quotient as i64, self.exponent - other.exponent - 61)
+        if other.mantissa == 0 {
+            return Self::ZERO;
+        }
+        let size = long_quotient(self.mantissa.unsigned_abs(), other.mantissa.unsigned_abs(), 61) as i64;
+        let quotient = if (self.mantissa ^ other.mantissa) < 0 { -size } else { size };
+        Self::new(quotient, self.exponent - other.exponent - 61)
     }
 }
 
@@ -199,7 +210,8 @@ impl PartialOrd for Real {
 }
 
 impl Ord for Real {
-    #[inline]
+    #[cfg_attr(target_pointer_width = "32", inline(never))]
+    #[cfg_attr(not(target_pointer_width = "32"), inline)]
     fn cmp(&self, other: &Self) -> Ordering {
         let sign = self.mantissa.signum().cmp(&other.mantissa.signum());
         if sign != Ordering::Equal || self.mantissa == 0 {

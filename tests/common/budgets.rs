@@ -14,7 +14,7 @@ const HEAD: &str = "\
 # What the firmware costs, compared exactly by tests/firmware_*.rs on the toolchain of rust-toolchain.toml. A change that
 # costs more raises the number here, in the same commit, and says why. To measure:
 #     UPDATE_BUDGETS=1 REQUIRE_FIRMWARE=1 cargo test --all-features --test firmware_gate --test firmware_bench \\
-#         --test firmware_peers --test firmware_parts --test firmware_defmt
+#         --test firmware_peers --test firmware_parts --test firmware_defmt --test firmware_intersect
 ";
 
 type Section = Vec<(String, u64)>;
