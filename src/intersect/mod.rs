@@ -98,6 +98,7 @@ mod part;
 mod plane;
 mod predicate;
 mod probe;
+mod roots;
 mod sheet;
 mod solve;
 mod trace;
@@ -118,6 +119,9 @@ use key::Crossing;
 use newton::Pair;
 use solve::Solver;
 use trace::Output;
+
+/// Pairs of parts that are looked at to find all points of one edge on the other patch.
+const EDGE_PAIRS: u32 = 1 << 12;
 
 /// The least depth of a grid.
 pub const MIN_DEPTH: u32 = 3;
@@ -381,11 +385,11 @@ fn in_order<'b>(
         }
     }
     let pair = Pair::new(nets);
-    let out = Output { points, used: 0, curves, curve_count: 0, branches, branch_count: 0, unrefined: 0 };
+    let out = Output { points, used: 0, curves, curve_count: 0, branches, branch_count: 0, unrefined: 0, aside: 0 };
     let tolerance = Real::new(options.tolerance.to_bits(), -44);
     let cell = pair.extent.shl(1 - depth as i32);
     let mut solver = Solver { pair: &pair, out, tolerance, cell, undecided: 0 };
-    let edges = edges::find(&pair, grids, tolerance, &mut solver.out)?;
+    let edges = edges::find(&pair, EDGE_PAIRS, tolerance, &mut solver.out)?;
     solver.undecided += edges.undecided;
 
     let room = records.len().min(links.len()) & !1;
@@ -417,6 +421,7 @@ fn in_order<'b>(
     solver.arms()?;
     solver.borders(grids, &mut chains)?;
     solver.chains(grids, &mut chains)?;
+    solver.roots()?;
     if let Some(report) = &report {
         solver.around(report)?;
         solver.leftovers(report)?;

@@ -54,6 +54,16 @@ impl Region {
         }
     }
 
+    /// The halves of a part of a line: `j` is 0.
+    pub(super) fn halves(self) -> [Self; 2] {
+        [0, 1].map(|d| Self { level: self.level + 1, i: 2 * self.i + d, ..self })
+    }
+
+    /// The ends of a part of a line.
+    pub(super) fn range(self) -> [i64; 2] {
+        [self.place(0, 0)[0], self.place(1, 0)[0]]
+    }
+
     /// A place well inside.
     pub(super) fn centre(self, triangle: bool) -> Place {
         let size = ONE >> self.level;
@@ -62,6 +72,19 @@ impl Region {
             (false, _) => [u + size / 2, v + size / 2],
             (true, false) => [u + size / 3, v + size / 3],
             (true, true) => [u + size - size / 3, v + size - size / 3],
+        }
+    }
+
+    /// Whether a place lies in the part, grown by a share of 2^-`grow` of its side.
+    pub(super) fn contains(self, place: Place, triangle: bool, grow: u32) -> bool {
+        let size = ONE >> self.level;
+        let slack = size >> grow;
+        let [u, v] = both!(|k| place[k] - self.place(0, 0)[k]);
+        let (least, most) = (u.min(v) >= -slack, u.max(v) <= size + slack);
+        match (triangle, self.upper) {
+            (false, _) => least && most,
+            (true, false) => least && u + v <= size + slack,
+            (true, true) => most && u + v >= size - slack,
         }
     }
 
@@ -95,10 +118,12 @@ pub(super) struct Cone {
     pub(super) axis: V3,
     /// The sine of the half angle; above 1 where nothing is known.
     pub(super) sine: Real,
+    /// Unit axes of the derivatives by u and v.
+    pub(super) along: [V3; 2],
 }
 
 impl Cone {
-    const UNKNOWN: Self = Self { axis: V3::ZERO, sine: Real::int(2) };
+    const UNKNOWN: Self = Self { axis: V3::ZERO, sine: Real::int(2), along: [V3::ZERO; 2] };
 
     /// Whether the half angle is below 45 degrees.
     pub(super) fn is_narrow(&self) -> bool {
@@ -228,12 +253,34 @@ impl Part {
                 }
             }
         }
-        self.region = Some(region);
         (self.triangle, self.degrees, self.count) = (sheet.triangle, (m, h), count);
+        self.finish(&net, sheet, region);
+    }
+
+    /// Becomes the part of an edge of a patch over an interval.
+    #[inline(never)]
+    pub(super) fn load_edge(&mut self, sheet: &Sheet<'_>, edge: usize, region: Region) {
+        let n = sheet.edge_degree(edge).min(MAX_DEGREE);
+        let mut row = [[0; 4]; MAX_DEGREE + 1];
+        for (k, out) in row.iter_mut().enumerate().take(n + 1) {
+            *out = sheet.edge_index(edge, k).and_then(|at| sheet.net.get(at)).copied().unwrap_or([0; 4]);
+        }
+        let [low, high] = region.range();
+        let mut net = [[0; 4]; ROOM];
+        for (out, value) in net.iter_mut().zip(piece(&row, n, low, high)) {
+            *out = value;
+        }
+        (self.triangle, self.degrees, self.count) = (false, (n, 0), n + 1);
+        self.finish(&net, sheet, region);
+    }
+
+    /// Hull, weights and box of these control points.
+    fn finish(&mut self, net: &[Homogeneous; ROOM], sheet: &Sheet<'_>, region: Region) {
+        self.region = Some(region);
         self.weights = [1 << 24; ROOM];
         (self.low, self.high) = ([i64::MAX; 3], [i64::MIN; 3]);
         self.is_aimed = false;
-        self.project(&net, sheet);
+        self.project(net, sheet);
     }
 
     /// Finds the cone of normals, once.
@@ -300,8 +347,27 @@ impl Part {
 
     /// The cone of normals.
     fn normals(&self) -> Cone {
+        let (points, radius) = self.centred();
+        let Some(along_u) = self.directions(&points, radius, 0) else { return Cone::UNKNOWN };
+        let Some(along_v) = self.directions(&points, radius, 1) else { return Cone::UNKNOWN };
+        let across = along_u.0.cross(along_v.0);
+        let sine = across.norm();
+        if sine.is_zero() {
+            return Cone::UNKNOWN;
+        }
+        let along = [along_u.0, along_v.0];
+        Cone { axis: across * (Real::ONE / sine), sine: (along_u.1 + along_v.1) / sine + Real::power(-20), along }
+    }
+
+    /// The unit axis of a line's tangents, and 2 sin of half their angle from it.
+    pub(super) fn tangents(&self) -> Option<(V3, Real)> {
+        let (points, radius) = self.centred();
+        self.directions(&points, radius, 0)
+    }
+
+    /// Weighted control points about the middle with at most 29 bits, and how far any point of the part is from it.
+    fn centred(&self) -> ([[i64; 3]; ROOM], i64) {
         let middle = three!(|k| (self.low[k] >> 1) + (self.high[k] >> 1));
-        // Weighted control points about the middle with at most 29 bits.
         let size = self.size().max(1);
         let shift = (64 - size.leading_zeros() as i32 - 28).max(0);
         let mut points = [[0_i64; 3]; ROOM];
@@ -310,15 +376,7 @@ impl Part {
                 out[k] = (((p[k] - middle[k]) >> shift) * i64::from(*w)) >> 24;
             }
         }
-        let radius = (size >> shift) + 1;
-        let Some(along_u) = self.directions(&points, radius, 0) else { return Cone::UNKNOWN };
-        let Some(along_v) = self.directions(&points, radius, 1) else { return Cone::UNKNOWN };
-        let across = along_u.0.cross(along_v.0);
-        let sine = across.norm();
-        if sine.is_zero() {
-            return Cone::UNKNOWN;
-        }
-        Cone { axis: across * (Real::ONE / sine), sine: (along_u.1 + along_v.1) / sine + Real::power(-20) }
+        (points, (size >> shift) + 1)
     }
 
     /// The unit axis of the derivatives along u or v, and 2 sin of half their angle from it.

@@ -349,6 +349,24 @@ impl Solver<'_, '_, '_> {
         Ok(())
     }
 
+    /// Follows curves from the points of edges on the other patch that no curve reaches.
+    pub(super) fn roots(&mut self) -> Result<(), IntersectError> {
+        while let Some(root) = self.out.take_back() {
+            if self.is_covered(root.bits()) {
+                continue;
+            }
+            let at = root.places();
+            let Some(jets) = self.pair.jets(at, 1) else { continue };
+            let spot = self.pair.spot(at, &jets);
+            if spot.sine > SINGULAR {
+                self.follow(Locus::Crossing, spot)?;
+            } else {
+                self.undecided += u32::from(!self.is_explained(spot.point));
+            }
+        }
+        Ok(())
+    }
+
     fn border(&mut self, grids: [&Grid<'_>; 2], crossing: Crossing) -> Result<(), IntersectError> {
         let (at, point) = begin(grids, crossing);
         let side = usize::from(crossing.side) & 1;

@@ -1,0 +1,322 @@
+//! Where a curve meets a surface: all points, with a proof that there are no others.
+//!
+//! The curve is an edge of one patch of a pair. Parts of it and parts of the other patch are halved, the longer one first,
+//! until a plane lies between their hulls, or they meet in one point at most: if no tangent of the curve is orthogonal to a
+//! normal of the surface, both within rigorous cones, then (t, u, v) ↦ S(u, v) − C(t) has the mean derivatives
+//! (Su, Sv, −C') with a determinant that is nowhere 0, and takes no value twice. There Newton's method finds the point; if it
+//! lies in the pair of parts, or so little beside it that the cones hold there too, the pair is done. What neither test decides
+//! is where the curve touches the surface or lies on it: such pairs are looked at by themselves.
+
+use super::IntersectError;
+use super::newton::{Pair, Spot};
+use super::part::{Part, Region};
+use super::sheet::{ONE, Place};
+use super::trace::BORDER;
+use crate::num::Real;
+
+/// Halvings of the curve at most.
+const DEEPEST_LINE: u8 = 14;
+/// Halvings of the surface at most.
+const DEEPEST: u8 = 11;
+const STACK: usize = DEEPEST_LINE as usize + 3 * DEEPEST as usize + 1;
+/// Halvings from which on a part of a curve that lies on the surface is too short to be told from a touch.
+const SHORTEST: u8 = 10;
+/// Parts on the surface that are kept.
+const PARTS: usize = 6;
+/// Touching points that are kept, to know them again.
+const TOUCHES: usize = 8;
+
+/// A part of a curve that lies on a surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lying {
+    /// The curve's parameters.
+    pub(super) range: [i64; 2],
+    /// One of them, and its point's place on the surface.
+    pub(super) at: i64,
+    pub(super) foot: Place,
+}
+
+/// What a search found beside the points that it gave away.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Roots {
+    /// Parts of the curve that lie on the surface, apart and rising.
+    pub(super) parts: [Option<Lying>; PARTS],
+    /// Pairs of parts about which nothing certain can be said.
+    pub(super) undecided: u32,
+    /// Pairs of parts looked at.
+    pub(super) visited: u32,
+}
+
+/// How a pair of parts was judged.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Verdict {
+    Decided,
+    Open,
+}
+
+struct Search<'s, 'a, F> {
+    pair: &'s Pair<'a>,
+    side: usize,
+    edge: usize,
+    visit: F,
+    failure: Result<(), IntersectError>,
+    touches: [Option<(i64, Place)>; TOUCHES],
+    roots: Roots,
+}
+
+impl<F: FnMut(&Spot, bool) -> Result<(), IntersectError>> Search<'_, '_, F> {
+    fn other(&self) -> usize {
+        1 - (self.side & 1)
+    }
+
+    /// The parameter on the curve and the place on the surface.
+    fn split(&self, spot: &Spot) -> (i64, Place) {
+        let sheet = &self.pair.sheets[self.side & 1];
+        (sheet.edge_parameter(self.edge, spot.at[self.side & 1]), spot.at[self.other()])
+    }
+
+    fn judge(&mut self, line: &mut Part, part: &mut Part, over: [Region; 2]) -> Verdict {
+        if !line.boxes_meet(part) {
+            return Verdict::Decided;
+        }
+        part.aim();
+        let (normals, tangents) = (part.cone, line.tangents());
+        if !normals.axis.is_zero() && line.is_apart_along(part, normals.axis) {
+            return Verdict::Decided;
+        }
+        let last = over[0].level >= DEEPEST_LINE && over[1].level >= DEEPEST;
+        if let Some((axis, turn)) = tangents {
+            // Along the curve a part of the surface is a quadrangle, nearly.
+            let beside = |k: usize| line.is_apart_along(part, axis.cross(normals.along[k & 1]));
+            if !normals.axis.is_zero() && (beside(0) || beside(1)) {
+                return Verdict::Decided;
+            }
+            let spread = turn + normals.sine;
+            if axis.dot(normals.axis).abs() > spread + Real::power(-9) {
+                if self.single(over) {
+                    return Verdict::Decided;
+                }
+            } else if spread < Real::power(-2) && over[0].level > 0 && self.contact(over) {
+                return Verdict::Decided;
+            }
+        }
+        if last {
+            self.give_up(over);
+            return Verdict::Decided;
+        }
+        Verdict::Open
+    }
+
+    /// Finds the only point of a pair of parts; whether it, or that there is none, is now known.
+    fn single(&mut self, over: [Region; 2]) -> bool {
+        let sheets = &self.pair.sheets;
+        let (own, other) = (&sheets[self.side & 1], &sheets[self.other()]);
+        let [low, high] = over[0].range();
+        let start = own.edge_place(self.edge, (low + high) >> 1);
+        let place = over[1].centre(other.triangle);
+        let at = if self.side & 1 == 0 { [start, place] } else { [place, start] };
+        let Some(spot) = self.pair.on_edge(self.side, self.edge, at) else { return false };
+        let (t, place) = self.split(&spot);
+        let slack = (high - low) >> 14;
+        if t < low - slack || t > high + slack || !over[1].contains(place, other.triangle, 14) {
+            return false;
+        }
+        if other.contains(place, BORDER) {
+            self.give(&spot, false);
+        }
+        true
+    }
+
+    fn give(&mut self, spot: &Spot, touching: bool) {
+        if self.failure.is_ok() {
+            self.failure = (self.visit)(spot, touching);
+        }
+    }
+
+    /// The curve's point at a parameter, its foot on the surface, and the sine of the curve's angle with it there, signed.
+    fn slope(&self, t: i64, near: Place) -> Option<(Spot, Real)> {
+        let spot = self.pair.edge_spot(self.side, self.edge, t, near)?;
+        let jet = self.pair.sheets[self.other()].eval(spot.at[self.other()], 1)?;
+        Some((spot, jet.normal().unit().dot(spot.tangent)))
+    }
+
+    /// Whether a spot lies on the surface.
+    fn is_on(&self, spot: &Spot) -> bool {
+        let other = self.other();
+        spot.residual <= self.pair.touching() && self.pair.sheets[other].contains(spot.at[other], BORDER)
+    }
+
+    /// Looks at a flat pair of parts nearly parallel to each other: whether the curve lies on the surface there or touches it.
+    fn contact(&mut self, over: [Region; 2]) -> bool {
+        let other = &self.pair.sheets[self.other()];
+        let [low, high] = over[0].range();
+        let near = over[1].centre(other.triangle);
+        let Some((middle, _)) = self.slope((low + high) >> 1, near) else { return false };
+        let (_, foot) = self.split(&middle);
+        if self.is_on(&middle) {
+            let known = |part: &Lying| part.range[0] <= low && high <= part.range[1];
+            if self.roots.parts.iter().flatten().any(known) {
+                return over[1].contains(foot, other.triangle, 0);
+            }
+            // Not at equal distances, as roots of a curve made by hand may be.
+            let sampled = [0, 197, 441, 727, 1024].into_iter().all(|share| {
+                let t = low + ((high - low) >> 10) * share;
+                self.slope(t, foot).is_some_and(|(spot, _)| self.is_on(&spot))
+            });
+            let grows = |part: &Lying| part.range[0] <= high && low <= part.range[1];
+            if sampled && (over[0].level < SHORTEST || self.roots.parts.iter().flatten().any(grows)) {
+                self.enter_part(Lying { range: [low, high], at: (low + high) >> 1, foot });
+                return over[1].contains(foot, other.triangle, 0);
+            }
+        }
+        let known = |touch: &(i64, Place)| {
+            let slack = high - low;
+            touch.0 >= low - slack && touch.0 <= high + slack && over[1].contains(touch.1, other.triangle, 0)
+        };
+        if over[0].level.min(over[1].level) >= 6 && self.touches.iter().flatten().any(known) {
+            return true;
+        }
+        let Some(spot) = self.touch([low, high], foot) else { return false };
+        self.enter_touch(&spot);
+        over[0].level.min(over[1].level) >= 6
+    }
+
+    /// Where the curve is parallel to the surface and meets it, between two parameters.
+    fn touch(&self, [mut low, mut high]: [i64; 2], foot: Place) -> Option<Spot> {
+        let ((_, mut from), (_, mut to)) = (self.slope(low, foot)?, self.slope(high, foot)?);
+        if from.is_negative() == to.is_negative() && !from.is_zero() && !to.is_zero() {
+            return None;
+        }
+        // The Illinois rule of false position (Dowell and Jarratt 1971).
+        let (mut last, mut near, mut side) = (low, foot, 0);
+        for _ in 0..40 {
+            let share = from / (from - to);
+            let t = (low + (Real::new(high - low, 0) * share).nearest(0)).clamp(low, high);
+            let (spot, slope) = self.slope(t, near)?;
+            if (t - last).abs() <= ONE >> 30 || high - low <= ONE >> 30 || slope.is_zero() {
+                return self.is_on(&spot).then_some(spot);
+            }
+            (last, near) = (t, self.split(&spot).1);
+            if slope.is_negative() == from.is_negative() {
+                (low, from) = (t, slope);
+                to = if side == 1 { to.shl(-1) } else { to };
+                side = 1;
+            } else {
+                (high, to) = (t, slope);
+                from = if side == 2 { from.shl(-1) } else { from };
+                side = 2;
+            }
+        }
+        None
+    }
+
+    fn enter_touch(&mut self, spot: &Spot) {
+        let found = self.split(spot);
+        let close = |t: &(i64, Place)| (t.0 - found.0).abs() <= ONE >> 20;
+        if self.touches.iter().flatten().any(close) {
+            return;
+        }
+        // One that there is no room for is given away each time it is found.
+        if let Some(free) = self.touches.iter_mut().find(|t| t.is_none()) {
+            *free = Some(found);
+        }
+        self.roots.undecided = self.roots.undecided.saturating_add(1);
+        self.give(spot, true);
+    }
+
+    /// Joins a part that lies on the surface with those it meets.
+    fn enter_part(&mut self, mut part: Lying) {
+        for place in &mut self.roots.parts {
+            if let Some(old) = place.filter(|p| p.range[0] <= part.range[1] && part.range[0] <= p.range[1]) {
+                part.range = [part.range[0].min(old.range[0]), part.range[1].max(old.range[1])];
+                *place = None;
+            }
+        }
+        match self.roots.parts.iter_mut().find(|p| p.is_none()) {
+            Some(free) => *free = Some(part),
+            None => self.roots.undecided = self.roots.undecided.saturating_add(1),
+        }
+    }
+
+    /// What can be said of a pair of parts too small to be halved.
+    fn give_up(&mut self, over: [Region; 2]) {
+        let other = &self.pair.sheets[self.other()];
+        let [low, high] = over[0].range();
+        let slack = (high - low) << 3;
+        let close = |from: i64, to: i64| from - slack <= high && low <= to + slack;
+        if self.touches.iter().flatten().any(|t| close(t.0, t.0))
+            || self.roots.parts.iter().flatten().any(|p| close(p.range[0], p.range[1]))
+        {
+            return;
+        }
+        match self.slope((low + high) >> 1, over[1].centre(other.triangle)) {
+            Some((spot, _)) if self.is_on(&spot) => self.enter_touch(&spot),
+            _ => self.roots.undecided = self.roots.undecided.saturating_add(1),
+        }
+    }
+}
+
+/// Finds all points where an edge of one patch meets the other and calls `visit` with each, and with whether the curve
+/// touches the surface there. A point in the border of two parts comes twice. Looks at `budget` pairs of parts at most.
+#[inline(never)]
+pub(super) fn find(
+    pair: &Pair<'_>,
+    (side, edge): (usize, usize),
+    budget: u32,
+    visit: impl FnMut(&Spot, bool) -> Result<(), IntersectError>,
+) -> Result<Roots, IntersectError> {
+    let roots = Roots { parts: [None; PARTS], undecided: 0, visited: 0 };
+    let mut search = Search { pair, side, edge, visit, failure: Ok(()), touches: [None; TOUCHES], roots };
+    let sheets = [&pair.sheets[side & 1], &pair.sheets[1 - (side & 1)]];
+    let mut stack = [[Region::ROOT; 2]; STACK];
+    let mut height = 1;
+    let mut parts = [Part::BLANK; 2];
+    while height > 0 && search.failure.is_ok() {
+        height -= 1;
+        let Some(over) = stack.get(height).copied() else { break };
+        if search.roots.visited >= budget {
+            search.roots.undecided = search.roots.undecided.saturating_add(height as u32 + 1);
+            break;
+        }
+        search.roots.visited += 1;
+        let [line, part] = &mut parts;
+        if line.region != Some(over[0]) {
+            line.load_edge(sheets[0], edge, over[0]);
+        }
+        if part.region != Some(over[1]) {
+            part.load(sheets[1], over[1]);
+        }
+        if search.judge(line, part, over) == Verdict::Decided {
+            continue;
+        }
+        let ends = [over[0].level >= DEEPEST_LINE, over[1].level >= DEEPEST];
+        if ends[0] || (!ends[1] && part.size() > line.size()) {
+            for quarter in over[1].quarters(sheets[1].triangle) {
+                if let Some(place) = stack.get_mut(height) {
+                    *place = [over[0], quarter];
+                    height += 1;
+                }
+            }
+        } else {
+            for half in over[0].halves() {
+                if let Some(place) = stack.get_mut(height) {
+                    *place = [half, over[1]];
+                    height += 1;
+                }
+            }
+        }
+    }
+    search.failure?;
+    // Few ranges: by insertion.
+    let parts = &mut search.roots.parts;
+    for i in 1..PARTS {
+        for j in (1..=i).rev() {
+            if let Some([a, b]) = parts.get_mut(j - 1..=j)
+                && b.is_some_and(|b| a.is_none_or(|a| b.range[0] < a.range[0]))
+            {
+                core::mem::swap(a, b);
+            }
+        }
+    }
+    Ok(search.roots)
+}
