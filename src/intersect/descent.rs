@@ -1,6 +1,6 @@
 //! Dual descent: pairs of grid nodes whose boxes meet, down to pairs of triangles that cross.
 
-use super::grid::{Grid, GridBox, GridVertex, union};
+use super::grid::{Grid, GridBox, GridVertex};
 use super::key::{Cell, Crossing, KEY_BITS};
 use super::predicate::{Perturbation, height as height_over, is_degenerate, normal};
 use super::sheet::Place;
@@ -185,46 +185,6 @@ pub(super) const fn key(record: u64) -> u64 {
 /// The number of a record: twice its segment, plus one for the second end.
 pub(super) const fn number(record: u64) -> usize {
     (record & ((1 << ID_BITS) - 1)) as usize
-}
-
-/// Calls `visit` for each triangle of a grid that a segment passes through: its share of the segment from the start, and the
-/// place on the grid's patch. The segment counts as A's edge.
-pub(super) fn pierce(
-    grid: &Grid<'_>,
-    edge: [GridVertex; 2],
-    mut visit: impl FnMut(Real, Place),
-) -> Result<(), IntersectError> {
-    let mut perturbation = Perturbation { positive: true, zeros: 0 };
-    let mut found = Found::default();
-    let own = union(&[edge[0]; 2], &[edge[1]; 2]);
-    let mut stack = [Node { level: 0, i: 0, j: 0 }; STACK];
-    let mut height = 1;
-    while height > 0 {
-        height -= 1;
-        let Some(node) = stack.get(height).copied() else { return Err(IntersectError::Internal) };
-        if !meet(&own, &grid.bounds(node.level.into(), node.i.into(), node.j.into())) {
-            continue;
-        }
-        if u32::from(node.level) < grid.depth {
-            for (di, dj) in [(1, 1), (1, 0), (0, 1), (0, 0)] {
-                let child = Node { level: node.level + 1, i: 2 * node.i + di, j: 2 * node.j + dj };
-                if grid.exists(child.level.into(), child.i.into(), child.j.into()) {
-                    *stack.get_mut(height).ok_or(IntersectError::Internal)? = child;
-                    height += 1;
-                }
-            }
-            continue;
-        }
-        for facet in facets(grid, node, &mut found).iter().flatten() {
-            let sides = edge.map(|x| perturbation.side(&facet.normal, facet.corners[0], x, true));
-            if sides[0] != sides[1] && perturbation.crosses(edge, facet.corners, true) {
-                let [a, b, c] = facet.corners;
-                let (share, weights) = meeting(edge, [a, b, c], &facet.normal);
-                visit(share, place_in(grid, facet.cell, weights));
-            }
-        }
-    }
-    Ok(())
 }
 
 /// Where a segment meets the plane of a triangle: its share of the segment, and the weights of the second and third corner,

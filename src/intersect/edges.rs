@@ -10,13 +10,11 @@ use super::hermite::Piece;
 use super::newton::{Pair, Spot, difference};
 use super::roots;
 use super::sheet::{ONE, Place, Sheet};
-use super::trace::{BORDER, Locus, Output, Tracer};
+use super::trace::{Locus, Output, Tracer};
 use crate::geometry::Point3;
 use crate::num::{Coord, I16F16, Real};
 use crate::patch::{MAX_DEGREE, triangle_index};
 
-/// How far past the known ends of a part of an edge its true ends are searched for.
-const REACH: i64 = ONE >> 12;
 /// Parts of edges on a surface that are kept at most: 7 or 8 edges, a few parts each.
 const MOST: usize = 12;
 /// The largest sine of an angle that counts as none along a curve.
@@ -86,16 +84,6 @@ fn are_equal(a: &Sheet<'_>, edge_a: usize, b: &Sheet<'_>, edge_b: usize, reverse
             p == q && i64::from(w) * i64::from(first_b.1) == i64::from(x) * i64::from(first_a.1)
         })
     })
-}
-
-impl Pair<'_> {
-    /// The spot of an edge's parameter if it lies on the other patch, up to `slack` of its domain.
-    fn on_surface(&self, side: usize, edge: usize, parameter: i64, near: Place, slack: i64) -> Option<Spot> {
-        let spot = self.edge_spot(side, edge, parameter, near)?;
-        let on =
-            spot.residual <= self.touching() && self.sheets[(1 - side) & 1].contains(spot.at[(1 - side) & 1], slack);
-        on.then_some(spot)
-    }
 }
 
 /// Parts of edges that lie on the other patch.
@@ -204,48 +192,15 @@ fn collect(
     let roots = roots::find(pair, (side, edge), budget, |spot, _| out.set_aside(spot))?;
     let mut undecided = roots.undecided;
     for part in roots.parts.into_iter().flatten() {
-        // A foot is found from one near it: in steps of a sixteenth of the way.
-        let on = |t: i64| {
-            let (mut near, mut spot) = (part.foot, None);
-            for k in 1..=16 {
-                let on_way = part.at + (t - part.at) / 16 * k;
-                spot = pair.on_surface(side, edge, if k == 16 { t } else { on_way }, near, BORDER);
-                near = spot?.at[other & 1];
+        let inner = [2, 1].map(|k| part.spot(pair, (side, edge), part.range[0] + (part.range[1] - part.range[0]) / 4 * k));
+        match (part.ends(pair, (side, edge)), inner) {
+            (Some(ends), [Some(centre), Some(quarter)]) => {
+                parts.enter(pair, OnSurface::new((side, edge), ends, [centre, quarter], false), &centre);
             }
-            spot
-        };
-        let [start, end] = part.range;
-        let spots = [start, start + (end - start) / 2, end, start + (end - start) / 4].map(on);
-        let [Some(mut low), Some(centre), Some(mut high), Some(quarter)] = spots else {
-            undecided += 1;
-            continue;
-        };
-        // The search ends some steps beside the true ends.
-        if start > 0 {
-            low = last_on(pair, (side, edge), low, start, (start - REACH).max(-1));
+            _ => undecided = undecided.saturating_add(1),
         }
-        if end < ONE {
-            high = last_on(pair, (side, edge), high, end, (end + REACH).min(ONE + 1));
-        }
-        parts.enter(pair, OnSurface::new((side, edge), [low, high], [centre, quarter], false), &centre);
     }
     Ok(undecided)
-}
-
-/// The last spot on the surface between a parameter on it and one that is not.
-fn last_on(pair: &Pair<'_>, (side, edge): (usize, usize), on: Spot, mut low: i64, mut high: i64) -> Spot {
-    let mut last = on;
-    for _ in 0..48 {
-        let middle = (low + high) >> 1;
-        match pair.on_surface(side, edge, middle, last.at[(1 - side) & 1], 4) {
-            Some(spot) => (low, last) = (middle, spot),
-            None => high = middle,
-        }
-        if (high - low).abs() <= 1 {
-            break;
-        }
-    }
-    last
 }
 
 impl Pair<'_> {

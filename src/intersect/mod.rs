@@ -26,7 +26,7 @@
 //! | `edges` | edges on the other surface: shared edges, borders of regions |
 //! | `part`, `certify`, `contact` | the loop-free test; points with collinear normals: touching points, branches, ridges |
 //! | `trace`, `hermite`, `solve` | seeds → curves |
-//! | `plane`, `probe` | [`section`]; [`curve_points`], [`project`] |
+//! | `plane`, `probe`, `hits` | [`section`]; [`project`]; [`curve_points`] |
 //!
 //! # What it needs
 //! Everything is lent by the caller ([`Buffers`]). Bytes for two tensor-product patches; triangles take half the vertices:
@@ -92,7 +92,9 @@ mod edges;
 mod error;
 mod grid;
 mod hermite;
+mod hits;
 mod key;
+mod line;
 mod newton;
 mod part;
 mod plane;
@@ -108,8 +110,9 @@ pub use curve::{Branch, Curve, CurveKind, CurvePoint, End, Side};
 pub use error::{Buffer, IntersectError};
 pub use fixed::types::{I2F30, I16F48, I20F44};
 pub use grid::{GridBox, GridVertex};
-pub use plane::section;
-pub use probe::{Projection, curve_points, project};
+pub use hits::{Held, Hit, HitKind, Hits, IsoCurve, SpaceCurve, curve_points};
+pub use plane::{Plane, section};
+pub use probe::{Projection, project};
 
 use crate::num::{Coord, Real};
 use crate::patch::SurfaceNet;
@@ -251,6 +254,19 @@ pub struct Intersection<'b> {
 }
 
 impl<'b> Intersection<'b> {
+    /// Of surfaces that are apart for certain.
+    const EMPTY: Self = Self {
+        points: &[],
+        curves: &[],
+        branches: &[],
+        undecided: 0,
+        zero_predicates: 0,
+        perturbation_sensitive: false,
+        degenerate_triangles: 0,
+        segments: 0,
+        tested: true,
+    };
+
     /// The components: curves, touching points, borders of regions.
     #[must_use]
     pub const fn curves(&self) -> &'b [Curve] {
@@ -278,6 +294,14 @@ impl<'b> Intersection<'b> {
 
 fn check_depth(depth: u32) -> Result<(), IntersectError> {
     if (MIN_DEPTH..=MAX_DEPTH).contains(&depth) { Ok(()) } else { Err(IntersectError::Depth { depth }) }
+}
+
+fn check(options: &Options) -> Result<(), IntersectError> {
+    check_depth(options.depth)?;
+    if options.tolerance <= 0 {
+        return Err(IntersectError::Tolerance { bits: options.tolerance.to_bits() });
+    }
+    Ok(())
 }
 
 /// The nets in an order that does not depend on that of the arguments.
@@ -343,14 +367,11 @@ pub fn intersect<'b>(
     options: &Options,
     buffers: Buffers<'b>,
 ) -> Result<Intersection<'b>, IntersectError> {
-    check_depth(options.depth)?;
-    if options.tolerance <= 0 {
-        return Err(IntersectError::Tolerance { bits: options.tolerance.to_bits() });
-    }
+    check(options)?;
     if is_ordered(&a, &b) {
-        return in_order([a, b], options, buffers, false);
+        return in_order(&Pair::new([a, b]), options, buffers, false);
     }
-    in_order([b, a], options, buffers, true).map_err(|error| match error {
+    in_order(&Pair::new([b, a]), options, buffers, true).map_err(|error| match error {
         IntersectError::DegeneratePatch { side } => IntersectError::DegeneratePatch { side: side.other() },
         other => other,
     })
@@ -358,13 +379,14 @@ pub fn intersect<'b>(
 
 /// The same with the nets in their order; `exchanged`: the caller's A is the second.
 fn in_order<'b>(
-    nets: [SurfaceNet<'_>; 2],
+    pair: &Pair<'_>,
     options: &Options,
     buffers: Buffers<'b>,
     exchanged: bool,
 ) -> Result<Intersection<'b>, IntersectError> {
     let Buffers { vertices, boxes, records, links, points, curves, branches } = buffers;
     let depth = options.depth;
+    let nets = [pair.sheets[0].source, pair.sheets[1].source];
     let [one, two] = nets.map(|net| vertex_count(net.is_triangle(), depth));
     let given = vertices.len();
     let short = IntersectError::VertexBuffer { needed: one + two, given };
@@ -384,12 +406,11 @@ fn in_order<'b>(
             return Err(IntersectError::DegeneratePatch { side });
         }
     }
-    let pair = Pair::new(nets);
     let out = Output { points, used: 0, curves, curve_count: 0, branches, branch_count: 0, unrefined: 0, aside: 0 };
     let tolerance = Real::new(options.tolerance.to_bits(), -44);
     let cell = pair.extent.shl(1 - depth as i32);
-    let mut solver = Solver { pair: &pair, out, tolerance, cell, undecided: 0 };
-    let edges = edges::find(&pair, EDGE_PAIRS, tolerance, &mut solver.out)?;
+    let mut solver = Solver { pair, out, tolerance, cell, undecided: 0 };
+    let edges = edges::find(pair, EDGE_PAIRS, tolerance, &mut solver.out)?;
     solver.undecided += edges.undecided;
 
     let room = records.len().min(links.len()) & !1;

@@ -76,7 +76,11 @@ pub(super) fn shifted(place: Place, by: [Real; 2]) -> Place {
 
 impl<'a> Pair<'a> {
     pub(super) fn new([a, b]: [SurfaceNet<'a>; 2]) -> Self {
-        let mut pair = Self { sheets: [Sheet::new(a), Sheet::new(b)], accept: Real::ZERO, extent: Real::ZERO };
+        Self::of([Sheet::new(a), Sheet::new(b)])
+    }
+
+    pub(super) fn of(sheets: [Sheet<'a>; 2]) -> Self {
+        let mut pair = Self { sheets, accept: Real::ZERO, extent: Real::ZERO };
         pair.extent = pair.sheets[0].extent.max(pair.sheets[1].extent);
         pair.accept = Real::power(-36).max(pair.extent.shl(-46));
         pair

@@ -174,7 +174,7 @@ fn piece(values: &[Homogeneous; MAX_DEGREE + 1], n: usize, low: i64, high: i64) 
 }
 
 /// The blossom of a triangular net: `counts` steps at each of the corners.
-fn triangle_blossom(net: &[Homogeneous; ROOM], n: usize, corners: &[Place; 3], counts: [usize; 3]) -> Homogeneous {
+pub(super) fn triangle_blossom(net: &[Homogeneous; ROOM], n: usize, corners: &[Place; 3], counts: [usize; 3]) -> Homogeneous {
     let mut values = [[0; 4]; triangle_len(MAX_DEGREE)];
     for (out, value) in values.iter_mut().zip(net).take(triangle_len(n)) {
         *out = *value;

@@ -19,8 +19,10 @@ const DEEPEST_LINE: u8 = 14;
 /// Halvings of the surface at most.
 const DEEPEST: u8 = 11;
 const STACK: usize = DEEPEST_LINE as usize + 3 * DEEPEST as usize + 1;
-/// Halvings from which on a part of a curve that lies on the surface is too short to be told from a touch.
-const SHORTEST: u8 = 10;
+/// A part of a curve on the surface that is shorter cannot be told from a touch.
+const SHORTEST: i64 = ONE >> 10;
+/// How far past the known ends of a part on the surface its true ends are searched for.
+const REACH: i64 = ONE >> 12;
 /// Parts on the surface that are kept.
 const PARTS: usize = 6;
 /// Touching points that are kept, to know them again.
@@ -47,6 +49,58 @@ pub(super) struct Roots {
     pub(super) visited: u32,
 }
 
+impl Lying {
+    /// The spot of a parameter within the range; its foot is found in steps of a sixteenth of the way.
+    pub(super) fn spot(&self, pair: &Pair<'_>, (side, edge): (usize, usize), t: i64) -> Option<Spot> {
+        let (mut near, mut spot) = (self.foot, None);
+        for k in 1..=16 {
+            let on_way = if k == 16 { t } else { self.at + (t - self.at) / 16 * k };
+            spot = pair.on_surface(side, edge, on_way, near, BORDER);
+            near = spot?.at[(1 - side) & 1];
+        }
+        spot
+    }
+
+    /// The ends: by halving, since the search ended within some of its last steps from them.
+    pub(super) fn ends(&self, pair: &Pair<'_>, line: (usize, usize)) -> Option<[Spot; 2]> {
+        let [start, end] = self.range;
+        let (mut low, mut high) = (self.spot(pair, line, start)?, self.spot(pair, line, end)?);
+        if start > 0 {
+            low = last_on(pair, line, low, start, (start - REACH).max(-1));
+        }
+        if end < ONE {
+            high = last_on(pair, line, high, end, (end + REACH).min(ONE + 1));
+        }
+        Some([low, high])
+    }
+}
+
+impl Pair<'_> {
+    /// The spot of an edge's parameter if it lies on the other patch, up to `slack` of its domain.
+    fn on_surface(&self, side: usize, edge: usize, parameter: i64, near: Place, slack: i64) -> Option<Spot> {
+        let spot = self.edge_spot(side, edge, parameter, near)?;
+        let on =
+            spot.residual <= self.touching() && self.sheets[(1 - side) & 1].contains(spot.at[(1 - side) & 1], slack);
+        on.then_some(spot)
+    }
+}
+
+/// The last spot on the surface between a parameter on it and one that is not.
+fn last_on(pair: &Pair<'_>, (side, edge): (usize, usize), on: Spot, mut low: i64, mut high: i64) -> Spot {
+    let mut last = on;
+    for _ in 0..48 {
+        let middle = (low + high) >> 1;
+        match pair.on_surface(side, edge, middle, last.at[(1 - side) & 1], 4) {
+            Some(spot) => (low, last) = (middle, spot),
+            None => high = middle,
+        }
+        if (high - low).abs() <= 1 {
+            break;
+        }
+    }
+    last
+}
+
 /// How a pair of parts was judged.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Verdict {
@@ -61,6 +115,8 @@ struct Search<'s, 'a, F> {
     visit: F,
     failure: Result<(), IntersectError>,
     touches: [Option<(i64, Place)>; TOUCHES],
+    /// Pairs too small to be halved.
+    doubts: [Option<(i64, Place)>; TOUCHES],
     roots: Roots,
 }
 
@@ -163,8 +219,7 @@ impl<F: FnMut(&Spot, bool) -> Result<(), IntersectError>> Search<'_, '_, F> {
                 let t = low + ((high - low) >> 10) * share;
                 self.slope(t, foot).is_some_and(|(spot, _)| self.is_on(&spot))
             });
-            let grows = |part: &Lying| part.range[0] <= high && low <= part.range[1];
-            if sampled && (over[0].level < SHORTEST || self.roots.parts.iter().flatten().any(grows)) {
+            if sampled {
                 self.enter_part(Lying { range: [low, high], at: (low + high) >> 1, foot });
                 return over[1].contains(foot, other.triangle, 0);
             }
@@ -177,6 +232,12 @@ impl<F: FnMut(&Spot, bool) -> Result<(), IntersectError>> Search<'_, '_, F> {
             return true;
         }
         let Some(spot) = self.touch([low, high], foot) else { return false };
+        // Along a part on the surface the curve is parallel to it everywhere.
+        let (t, foot) = self.split(&spot);
+        let lies = |t: i64| (0..=ONE).contains(&t) && self.slope(t, foot).is_some_and(|(spot, _)| self.is_on(&spot));
+        if lies(t - ((high - low) >> 3)) || lies(t + ((high - low) >> 3)) {
+            return false;
+        }
         self.enter_touch(&spot);
         over[0].level.min(over[1].level) >= 6
     }
@@ -238,20 +299,43 @@ impl<F: FnMut(&Spot, bool) -> Result<(), IntersectError>> Search<'_, '_, F> {
         }
     }
 
-    /// What can be said of a pair of parts too small to be halved.
+    /// Keeps a pair of parts too small to be halved.
     fn give_up(&mut self, over: [Region; 2]) {
         let other = &self.pair.sheets[self.other()];
         let [low, high] = over[0].range();
-        let slack = (high - low) << 3;
-        let close = |from: i64, to: i64| from - slack <= high && low <= to + slack;
-        if self.touches.iter().flatten().any(|t| close(t.0, t.0))
-            || self.roots.parts.iter().flatten().any(|p| close(p.range[0], p.range[1]))
-        {
+        let near = |d: &(i64, Place)| (d.0 - low).abs() <= (high - low) << 3;
+        if self.doubts.iter().flatten().any(near) {
             return;
         }
-        match self.slope((low + high) >> 1, over[1].centre(other.triangle)) {
-            Some((spot, _)) if self.is_on(&spot) => self.enter_touch(&spot),
-            _ => self.roots.undecided = self.roots.undecided.saturating_add(1),
+        match self.doubts.iter_mut().find(|d| d.is_none()) {
+            Some(free) => *free = Some((low, over[1].centre(other.triangle))),
+            None => self.roots.undecided = self.roots.undecided.saturating_add(1),
+        }
+    }
+
+    /// What can be said of them, and of parts too short, when all else is known.
+    fn finish(&mut self) {
+        for k in 0..PARTS {
+            let Some(Some(part)) = self.roots.parts.get(k).copied() else { continue };
+            if part.range[1] - part.range[0] < SHORTEST {
+                self.roots.parts[k] = None;
+                if let Some((spot, _)) = self.slope(part.at, part.foot) {
+                    self.enter_touch(&spot);
+                }
+            }
+        }
+        let slack = ONE >> (DEEPEST_LINE - 3);
+        for (t, place) in self.doubts.into_iter().flatten() {
+            let close = |from: i64, to: i64| from - slack <= t && t <= to + slack;
+            if self.touches.iter().flatten().any(|touch| close(touch.0, touch.0))
+                || self.roots.parts.iter().flatten().any(|p| close(p.range[0], p.range[1]))
+            {
+                continue;
+            }
+            match self.slope(t, place) {
+                Some((spot, _)) if self.is_on(&spot) => self.enter_touch(&spot),
+                _ => self.roots.undecided = self.roots.undecided.saturating_add(1),
+            }
         }
     }
 }
@@ -266,7 +350,7 @@ pub(super) fn find(
     visit: impl FnMut(&Spot, bool) -> Result<(), IntersectError>,
 ) -> Result<Roots, IntersectError> {
     let roots = Roots { parts: [None; PARTS], undecided: 0, visited: 0 };
-    let mut search = Search { pair, side, edge, visit, failure: Ok(()), touches: [None; TOUCHES], roots };
+    let mut search = Search { pair, side, edge, visit, failure: Ok(()), touches: [None; TOUCHES], doubts: [None; TOUCHES], roots };
     let sheets = [&pair.sheets[side & 1], &pair.sheets[1 - (side & 1)]];
     let mut stack = [[Region::ROOT; 2]; STACK];
     let mut height = 1;
@@ -306,6 +390,7 @@ pub(super) fn find(
             }
         }
     }
+    search.finish();
     search.failure?;
     // Few ranges: by insertion.
     let parts = &mut search.roots.parts;

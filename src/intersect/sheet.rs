@@ -64,7 +64,7 @@ struct Collapsed {
 
 /// `a + (b − a) t`, rounded half up.
 #[inline(always)]
-fn between(a: i64, b: i64, t: i64) -> i64 {
+pub(super) fn between(a: i64, b: i64, t: i64) -> i64 {
     let product = i128::from(b.wrapping_sub(a)) * i128::from(t) + (1 << (PARAMETER_BITS - 1));
     a.wrapping_add((product >> PARAMETER_BITS) as i64)
 }
@@ -232,7 +232,7 @@ impl<'a> Sheet<'a> {
         };
         let (m, h) = self.degrees;
         let mixed = if self.triangle { m * (m - 1) } else { m * h };
-        let factors = [m, h, m * (m - 1), mixed, h * (h - 1)];
+        let factors = [m, h, m * (m - 1), mixed, h * h.saturating_sub(1)];
         let value = &sums[0];
         if !self.rational {
             let shift = POINT_BITS - self.bits;
