@@ -192,7 +192,8 @@ fn collect(
     let roots = roots::find(pair, (side, edge), budget, |spot, _| out.set_aside(spot))?;
     let mut undecided = roots.undecided;
     for part in roots.parts.into_iter().flatten() {
-        let inner = [2, 1].map(|k| part.spot(pair, (side, edge), part.range[0] + (part.range[1] - part.range[0]) / 4 * k));
+        let inner =
+            [2, 1].map(|k| part.spot(pair, (side, edge), part.range[0] + (part.range[1] - part.range[0]) / 4 * k));
         match (part.ends(pair, (side, edge)), inner) {
             (Some(ends), [Some(centre), Some(quarter)]) => {
                 parts.enter(pair, OnSurface::new((side, edge), ends, [centre, quarter], false), &centre);

@@ -231,6 +231,24 @@ impl Room {
         let vertices = [a, b].map(|net| vertex_count(net.is_triangle(), depth));
         Ok(Self { vertices: vertices[0] + vertices[1], boxes: 2 * box_count(depth) })
     }
+
+    /// The room for a [`section`] of a net at a depth.
+    ///
+    /// # Errors
+    /// [`IntersectError::Depth`].
+    ///
+    /// # Examples
+    /// ```
+    /// use embedded_surfaces::{intersect::Room, patch::{BilinearPatch, Surface}};
+    /// let floor = BilinearPatch::from_ints([[[0, 0, 0], [0, 60, 0]], [[80, 0, 0], [80, 60, 0]]])?;
+    /// assert_eq!(Room::of_section(floor.surface(), 5)?, Room::new(floor.surface(), floor.surface(), 5)?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn of_section(net: SurfaceNet<'_>, depth: u32) -> Result<Self, IntersectError> {
+        check_depth(depth)?;
+        let vertices = [net.is_triangle(), false].map(|triangle| vertex_count(triangle, depth));
+        Ok(Self { vertices: vertices[0] + vertices[1], boxes: 2 * box_count(depth) })
+    }
 }
 
 /// The curves in which two surfaces meet, and what is certain about them.

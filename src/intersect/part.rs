@@ -75,10 +75,9 @@ impl Region {
         }
     }
 
-    /// Whether a place lies in the part, grown by a share of 2^-`grow` of its side.
-    pub(super) fn contains(self, place: Place, triangle: bool, grow: u32) -> bool {
+    /// Whether a place lies in the part, up to `slack`.
+    pub(super) fn contains(self, place: Place, triangle: bool, slack: i64) -> bool {
         let size = ONE >> self.level;
-        let slack = size >> grow;
         let [u, v] = both!(|k| place[k] - self.place(0, 0)[k]);
         let (least, most) = (u.min(v) >= -slack, u.max(v) <= size + slack);
         match (triangle, self.upper) {
@@ -120,10 +119,22 @@ pub(super) struct Cone {
     pub(super) sine: Real,
     /// Unit axes of the derivatives by u and v.
     pub(super) along: [V3; 2],
+    /// How much directions may turn a share of the part beyond it.
+    pub(super) turn: Real,
+}
+
+/// Directions about a unit axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Directions {
+    pub(super) axis: V3,
+    /// 2 sin of half the largest angle from it.
+    pub(super) spread: Real,
+    /// How much directions may turn a share of the part beyond it.
+    pub(super) turn: Real,
 }
 
 impl Cone {
-    const UNKNOWN: Self = Self { axis: V3::ZERO, sine: Real::int(2), along: [V3::ZERO; 2] };
+    const UNKNOWN: Self = Self { axis: V3::ZERO, sine: Real::int(2), along: [V3::ZERO; 2], turn: Real::ZERO };
 
     /// Whether the half angle is below 45 degrees.
     pub(super) fn is_narrow(&self) -> bool {
@@ -174,7 +185,12 @@ fn piece(values: &[Homogeneous; MAX_DEGREE + 1], n: usize, low: i64, high: i64) 
 }
 
 /// The blossom of a triangular net: `counts` steps at each of the corners.
-pub(super) fn triangle_blossom(net: &[Homogeneous; ROOM], n: usize, corners: &[Place; 3], counts: [usize; 3]) -> Homogeneous {
+pub(super) fn triangle_blossom(
+    net: &[Homogeneous; ROOM],
+    n: usize,
+    corners: &[Place; 3],
+    counts: [usize; 3],
+) -> Homogeneous {
     let mut values = [[0; 4]; triangle_len(MAX_DEGREE)];
     for (out, value) in values.iter_mut().zip(net).take(triangle_len(n)) {
         *out = *value;
@@ -350,17 +366,21 @@ impl Part {
         let (points, radius) = self.centred();
         let Some(along_u) = self.directions(&points, radius, 0) else { return Cone::UNKNOWN };
         let Some(along_v) = self.directions(&points, radius, 1) else { return Cone::UNKNOWN };
-        let across = along_u.0.cross(along_v.0);
+        let across = along_u.axis.cross(along_v.axis);
         let sine = across.norm();
         if sine.is_zero() {
             return Cone::UNKNOWN;
         }
-        let along = [along_u.0, along_v.0];
-        Cone { axis: across * (Real::ONE / sine), sine: (along_u.1 + along_v.1) / sine + Real::power(-20), along }
+        Cone {
+            axis: across * (Real::ONE / sine),
+            sine: (along_u.spread + along_v.spread) / sine + Real::power(-20),
+            along: [along_u.axis, along_v.axis],
+            turn: (along_u.turn + along_v.turn) / sine,
+        }
     }
 
-    /// The unit axis of a line's tangents, and 2 sin of half their angle from it.
-    pub(super) fn tangents(&self) -> Option<(V3, Real)> {
+    /// The directions of a line's tangents.
+    pub(super) fn tangents(&self) -> Option<Directions> {
         let (points, radius) = self.centred();
         self.directions(&points, radius, 0)
     }
@@ -379,8 +399,11 @@ impl Part {
         (points, (size >> shift) + 1)
     }
 
-    /// The unit axis of the derivatives along u or v, and 2 sin of half their angle from it.
-    fn directions(&self, points: &[[i64; 3]; ROOM], radius: i64, along: usize) -> Option<(V3, Real)> {
+    /// The directions of the derivatives along u or v.
+    ///
+    /// Beyond the part by a share ε, each of n − 1 steps of de Casteljau's algorithm moves a difference by ε times another
+    /// less itself: 2 n ε times the longest in all, and directions turn by that over the shortest.
+    fn directions(&self, points: &[[i64; 3]; ROOM], radius: i64, along: usize) -> Option<Directions> {
         let mut sum = [0_i64; 3];
         self.differences(along, |a, b| {
             let [p, q] = [a, b].map(|k| points.get(k).copied().unwrap_or([0; 3]));
@@ -391,7 +414,7 @@ impl Part {
         if length.is_zero() {
             return None;
         }
-        let (mut worst, mut shortest, mut turn) = (Real::ZERO, Real::power(60), 0_i64);
+        let (mut worst, mut shortest, mut longest, mut turn) = (Real::ZERO, Real::power(60), Real::ZERO, 0_i64);
         let weight = |k: usize| self.weights.get(k).copied().unwrap_or(0);
         self.differences(along, |a, b| turn = turn.max(i64::from((weight(a) - weight(b)).abs())));
         // Two units of rounding a component, and what the weights' change adds.
@@ -409,7 +432,7 @@ impl Part {
                 return;
             }
             worst = worst.max(aside / least.square());
-            shortest = shortest.min(least);
+            (shortest, longest) = (shortest.min(least), longest.max(d.square()));
         });
         if bad {
             return None;
@@ -417,7 +440,11 @@ impl Part {
         let worst = worst.sqrt() + widening / shortest;
         // tan α to 2 sin(α/2) = √(2 − 2 cos α).
         let cosine = Real::ONE / (Real::ONE + worst.square()).sqrt();
-        Some((axis * inverse, ((Real::ONE - cosine).shl(1)).max(Real::ZERO).sqrt()))
+        Some(Directions {
+            axis: axis * inverse,
+            spread: ((Real::ONE - cosine).shl(1)).max(Real::ZERO).sqrt(),
+            turn: (longest.sqrt() + widening) / shortest * Real::int(2 * MAX_DEGREE as i64),
+        })
     }
 
     /// Calls `visit` with the indices of neighbours along u or v.

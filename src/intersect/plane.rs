@@ -151,7 +151,7 @@ impl Plane {
 /// Its parameters are the two coordinates across the longest component of the normal, (y, z), (z, x) or (x, y), mapped to
 /// 0 ..= 1, the other way round where that component is negative. Everything else is as of [`intersect`](super::intersect),
 /// tangencies included: a summit is a touching point, a pass a branch. A plane on one side of all control points meets the
-/// surface nowhere, which is certain, and no buffer is used.
+/// surface nowhere, which is certain, and no buffer is used. Vertices and boxes: [`Room::of_section`](super::Room::of_section).
 ///
 /// The plane is within 2^-43 unit of what was asked for, for points and curves; the mesh that finds them has its corners
 /// rounded to 2^-16 unit, as it has the surface's vertices.

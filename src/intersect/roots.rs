@@ -9,7 +9,7 @@
 
 use super::IntersectError;
 use super::newton::{Pair, Spot};
-use super::part::{Part, Region};
+use super::part::{Directions, Part, Region};
 use super::sheet::{ONE, Place};
 use super::trace::BORDER;
 use crate::num::Real;
@@ -101,6 +101,16 @@ fn last_on(pair: &Pair<'_>, (side, edge): (usize, usize), on: Spot, mut low: i64
     last
 }
 
+/// How far beside a part of a level a point may be found: a share of 2^-20 of the part and 2^-28 of the domain.
+fn slack(level: u8) -> i64 {
+    (ONE >> (20 + level)) + (ONE >> 28)
+}
+
+/// The same as a share of the part.
+fn share(level: i32) -> Real {
+    Real::power(-20) + Real::power(level - 28)
+}
+
 /// How a pair of parts was judged.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Verdict {
@@ -141,14 +151,16 @@ impl<F: FnMut(&Spot, bool) -> Result<(), IntersectError>> Search<'_, '_, F> {
             return Verdict::Decided;
         }
         let last = over[0].level >= DEEPEST_LINE && over[1].level >= DEEPEST;
-        if let Some((axis, turn)) = tangents {
+        if let Some(Directions { axis, spread, turn }) = tangents {
             // Along the curve a part of the surface is a quadrangle, nearly.
             let beside = |k: usize| line.is_apart_along(part, axis.cross(normals.along[k & 1]));
             if !normals.axis.is_zero() && (beside(0) || beside(1)) {
                 return Verdict::Decided;
             }
-            let spread = turn + normals.sine;
-            if axis.dot(normals.axis).abs() > spread + Real::power(-9) {
+            let spread = spread + normals.sine;
+            let [level, other] = over.map(|region| region.level.into());
+            let beside = turn * share(level) + normals.turn * share(other);
+            if axis.dot(normals.axis).abs() > spread + beside {
                 if self.single(over) {
                     return Verdict::Decided;
                 }
@@ -173,8 +185,8 @@ impl<F: FnMut(&Spot, bool) -> Result<(), IntersectError>> Search<'_, '_, F> {
         let at = if self.side & 1 == 0 { [start, place] } else { [place, start] };
         let Some(spot) = self.pair.on_edge(self.side, self.edge, at) else { return false };
         let (t, place) = self.split(&spot);
-        let slack = (high - low) >> 14;
-        if t < low - slack || t > high + slack || !over[1].contains(place, other.triangle, 14) {
+        let slack = slack(over[0].level);
+        if t < low - slack || t > high + slack || !over[1].contains(place, other.triangle, self::slack(over[1].level)) {
             return false;
         }
         if other.contains(place, BORDER) {
@@ -212,7 +224,7 @@ impl<F: FnMut(&Spot, bool) -> Result<(), IntersectError>> Search<'_, '_, F> {
         if self.is_on(&middle) {
             let known = |part: &Lying| part.range[0] <= low && high <= part.range[1];
             if self.roots.parts.iter().flatten().any(known) {
-                return over[1].contains(foot, other.triangle, 0);
+                return over[1].contains(foot, other.triangle, ONE >> over[1].level);
             }
             // Not at equal distances, as roots of a curve made by hand may be.
             let sampled = [0, 197, 441, 727, 1024].into_iter().all(|share| {
@@ -221,12 +233,14 @@ impl<F: FnMut(&Spot, bool) -> Result<(), IntersectError>> Search<'_, '_, F> {
             });
             if sampled {
                 self.enter_part(Lying { range: [low, high], at: (low + high) >> 1, foot });
-                return over[1].contains(foot, other.triangle, 0);
+                return over[1].contains(foot, other.triangle, ONE >> over[1].level);
             }
         }
         let known = |touch: &(i64, Place)| {
             let slack = high - low;
-            touch.0 >= low - slack && touch.0 <= high + slack && over[1].contains(touch.1, other.triangle, 0)
+            touch.0 >= low - slack
+                && touch.0 <= high + slack
+                && over[1].contains(touch.1, other.triangle, ONE >> over[1].level)
         };
         if over[0].level.min(over[1].level) >= 6 && self.touches.iter().flatten().any(known) {
             return true;
@@ -350,7 +364,8 @@ pub(super) fn find(
     visit: impl FnMut(&Spot, bool) -> Result<(), IntersectError>,
 ) -> Result<Roots, IntersectError> {
     let roots = Roots { parts: [None; PARTS], undecided: 0, visited: 0 };
-    let mut search = Search { pair, side, edge, visit, failure: Ok(()), touches: [None; TOUCHES], doubts: [None; TOUCHES], roots };
+    let mut search =
+        Search { pair, side, edge, visit, failure: Ok(()), touches: [None; TOUCHES], doubts: [None; TOUCHES], roots };
     let sheets = [&pair.sheets[side & 1], &pair.sheets[1 - (side & 1)]];
     let mut stack = [[Region::ROOT; 2]; STACK];
     let mut height = 1;

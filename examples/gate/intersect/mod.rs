@@ -143,6 +143,7 @@ pub(super) fn calls(sum: &mut Sum) {
     let room = Room::new(nets[0], nets[1], hide(MIN_DEPTH));
     sum.add(room.map(|room| [room.vertices, room.boxes].map(|n| n as u32)));
     sum.add(Room::new(nets[0], nets[1], hide(9)).map(|_| 0_u8));
+    sum.add(Room::of_section(nets[2], hide(MIN_DEPTH)).map(|room| room.vertices as u32));
     sum.add(intersect(
         nets[0],
         hide(&data::OCTANT).surface(),
