@@ -329,6 +329,13 @@ impl Part {
         }
     }
 
+    /// The direction of the third side of a triangular part; zero for others.
+    pub(super) fn diagonal(&self) -> V3 {
+        let corners = [self.hull[0], self.hull[triangle_index(self.degrees.0.min(MAX_DEGREE), 0).min(ROOM - 1)]];
+        let [from, to] = if self.triangle { corners } else { [[0; 3]; 2] };
+        V3::bits(three!(|k| to[k] - from[k]), 0).unit()
+    }
+
     fn points(&self) -> &[[i64; 3]] {
         self.hull.get(..self.count).unwrap_or(&[])
     }

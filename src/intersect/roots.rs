@@ -152,9 +152,9 @@ impl<F: FnMut(&Spot, bool) -> Result<(), IntersectError>> Search<'_, '_, F> {
         }
         let last = over[0].level >= DEEPEST_LINE && over[1].level >= DEEPEST;
         if let Some(Directions { axis, spread, turn }) = tangents {
-            // Along the curve a part of the surface is a quadrangle, nearly.
-            let beside = |k: usize| line.is_apart_along(part, axis.cross(normals.along[k & 1]));
-            if !normals.axis.is_zero() && (beside(0) || beside(1)) {
+            // Along the curve a part of the surface is a quadrangle or a triangle, nearly: planes through its sides.
+            let sides = [normals.along[0], normals.along[1], part.diagonal()];
+            if sides.into_iter().any(|s| !s.is_zero() && line.is_apart_along(part, axis.cross(s))) {
                 return Verdict::Decided;
             }
             let spread = spread + normals.sine;
