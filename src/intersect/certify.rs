@@ -5,14 +5,15 @@
 //! (Sinha, Klassen, Wang 1985; Sederberg, Christiansen, Katz 1989). Others are halved, the longer one first. Where both are
 //! nearly flat, a search for a point with collinear normals tells what keeps them from being decided.
 
+use super::cells::Cells;
 use super::contact::{Contact, Form};
 use super::newton::{Pair, Places};
-use super::part::{Part, Region};
+use super::part::{Meeting, Part, Region};
 use crate::num::Real;
 
 /// Halvings of a part at most.
 const DEEPEST: u8 = 11;
-const STACK: usize = 3 * 2 * DEEPEST as usize + 2;
+pub(super) const STACK: usize = 3 * 2 * DEEPEST as usize + 2;
 /// Points with collinear normals that are kept.
 pub(super) const CONTACTS: usize = 24;
 
@@ -73,30 +74,24 @@ enum Verdict {
     Explained,
 }
 
-struct Search<'s, 'a, F> {
+struct Search<'s, 'a, 'c, F> {
     pair: &'s Pair<'a>,
+    cells: &'s mut Cells<'c>,
     known: F,
     report: Report,
 }
 
-impl<F: FnMut(Query<'_>) -> bool> Search<'_, '_, F> {
+impl<F: FnMut(Query<'_>) -> bool> Search<'_, '_, '_, F> {
     fn judge(&mut self, a: &mut Part, b: &mut Part, regions: [Region; 2]) -> Verdict {
         let [over_a, over_b] = regions;
-        if !a.boxes_meet(b) {
-            return Verdict::Decided;
-        }
-        a.aim();
-        b.aim();
-        for axis in [a.cone.axis, b.cone.axis] {
-            if !axis.is_zero() && a.is_apart_along(b, axis) {
+        match a.meeting(b) {
+            Meeting::Apart => return Verdict::Decided,
+            Meeting::Through => {
+                self.cells.enter(regions);
                 return Verdict::Decided;
             }
-        }
-        if !(a.cone.is_narrow() && b.cone.is_narrow()) {
-            return Verdict::Open;
-        }
-        if a.cone.is_apart(&b.cone) {
-            return Verdict::Decided;
+            Meeting::Any if !(a.cone.is_narrow() && b.cone.is_narrow()) => return Verdict::Open,
+            Meeting::Any => {}
         }
         let level = over_a.level.min(over_b.level);
         if level >= 4 {
@@ -155,9 +150,14 @@ impl<F: FnMut(Query<'_>) -> bool> Search<'_, '_, F> {
 
 /// Runs the test on at most `budget` pairs; `known` answers what is known of tangencies.
 #[inline(never)]
-pub(super) fn test(pair: &Pair<'_>, budget: u32, known: impl FnMut(Query<'_>) -> bool) -> Report {
+pub(super) fn test(
+    pair: &Pair<'_>,
+    budget: u32,
+    cells: &mut Cells<'_>,
+    known: impl FnMut(Query<'_>) -> bool,
+) -> Report {
     let report = Report { contacts: [None; CONTACTS], count: 0, undecided: 0, visited: 0 };
-    let mut search = Search { pair, known, report };
+    let mut search = Search { pair, cells, known, report };
     let mut stack = [[Region::ROOT; 2]; STACK];
     let mut height = 1;
     let mut parts = [Part::BLANK; 2];
@@ -183,19 +183,33 @@ pub(super) fn test(pair: &Pair<'_>, budget: u32, known: impl FnMut(Query<'_>) ->
             }
             Verdict::Open => {}
         }
-        let ends = regions.map(|r| r.level >= DEEPEST);
-        if ends[0] && ends[1] {
+        if regions.iter().all(|r| r.level >= DEEPEST) {
             search.report.undecided = search.report.undecided.saturating_add(1);
             continue;
         }
-        let split = usize::from(ends[0] || (!ends[1] && parts[1].size() > parts[0].size()));
-        for quarter in regions[split].quarters(pair.sheets[split].triangle) {
-            if let Some(place) = stack.get_mut(height) {
-                *place = regions;
-                place[split] = quarter;
-                height += 1;
-            }
-        }
+        halve(pair, &parts, regions, &mut stack, &mut height);
     }
     search.report
+}
+
+/// Puts the quarters of the larger part, each with the other, on a stack; nothing where both are as small as they get.
+pub(super) fn halve(
+    pair: &Pair<'_>,
+    parts: &[Part; 2],
+    regions: [Region; 2],
+    stack: &mut [[Region; 2]; STACK],
+    height: &mut usize,
+) {
+    let ends = regions.map(|r| r.level >= DEEPEST);
+    if ends[0] && ends[1] {
+        return;
+    }
+    let split = usize::from(ends[0] || (!ends[1] && parts[1].size() > parts[0].size()));
+    for quarter in regions[split & 1].quarters(pair.sheets[split & 1].triangle) {
+        if let Some(place) = stack.get_mut(*height) {
+            *place = regions;
+            place[split & 1] = quarter;
+            *height += 1;
+        }
+    }
 }

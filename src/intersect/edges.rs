@@ -7,7 +7,9 @@
 use super::IntersectError;
 use super::curve::{Curve, CurveKind, CurvePoint};
 use super::hermite::Piece;
+use super::line::Line;
 use super::newton::{Pair, Spot, difference};
+use super::part::{Part, Region};
 use super::roots;
 use super::sheet::{ONE, Place, Sheet};
 use super::trace::{Locus, Output, Tracer};
@@ -136,9 +138,11 @@ pub(super) fn find(
 ) -> Result<Edges, IntersectError> {
     let mut parts = Parts { list: [None; MOST], count: 0 };
     let mut undecided = 0_u32;
+    let mut halves = [Part::BLANK; 2];
     for side in 0..2 {
+        halves[1].region = None;
         for edge in 0..pair.sheets[side & 1].edge_count() {
-            undecided = undecided.saturating_add(collect(pair, (side, edge), budget, &mut parts, out)?);
+            undecided = undecided.saturating_add(collect(pair, (side, edge), budget, &mut halves, &mut parts, out)?);
         }
     }
     let mut found = Edges { overlap: false, undecided: undecided + u32::from(parts.count == MOST) };
@@ -163,6 +167,7 @@ fn collect(
     pair: &Pair<'_>,
     (side, edge): (usize, usize),
     budget: u32,
+    halves: &mut [Part; 2],
     parts: &mut Parts,
     out: &mut Output<'_>,
 ) -> Result<u32, IntersectError> {
@@ -189,12 +194,12 @@ fn collect(
         }
         return Ok(0);
     }
-    let roots = roots::find(pair, (side, edge), budget, |spot, _| out.set_aside(spot))?;
-    let mut undecided = roots.undecided;
+    let line = Line::edge(sheet, side, edge);
+    let roots = roots::find(pair, line, Region::ROOT, budget, halves, |spot, _| out.set_aside(spot))?;
+    let mut undecided = roots.undecided.saturating_add(roots.touching);
     for part in roots.parts.into_iter().flatten() {
-        let inner =
-            [2, 1].map(|k| part.spot(pair, (side, edge), part.range[0] + (part.range[1] - part.range[0]) / 4 * k));
-        match (part.ends(pair, (side, edge)), inner) {
+        let inner = [2, 1].map(|k| part.spot(pair, &line, part.range[0] + (part.range[1] - part.range[0]) / 4 * k));
+        match (part.ends(pair, &line), inner) {
             (Some(ends), [Some(centre), Some(quarter)]) => {
                 parts.enter(pair, OnSurface::new((side, edge), ends, [centre, quarter], false), &centre);
             }

@@ -1,6 +1,8 @@
 //! Where a curve meets a surface: all points, each as what it is.
 
+use super::line::Line;
 use super::newton::{Pair, Spot};
+use super::part::{Part, Region};
 use super::roots;
 use super::sheet::{ONE, Place, Sheet};
 use super::{Buffer, I2F30, I16F48, I20F44, IntersectError, Side};
@@ -91,9 +93,9 @@ impl<'a> IsoCurve<'a> {
         Ok(Self { net, held, at: bits })
     }
 
-    /// The places of the ends on a triangle.
+    /// The places of the ends.
     const fn ends(&self) -> [Place; 2] {
-        let rest = ONE - self.at;
+        let rest = if self.net.is_triangle() { ONE - self.at } else { ONE };
         match self.held {
             Held::First => [[self.at, 0], [self.at, rest]],
             Held::Second => [[0, self.at], [rest, self.at]],
@@ -110,11 +112,7 @@ impl<'a> SpaceCurve<'a> {
             Self::Rational(net) => Sheet::line(net.control_net(), Some(net)),
             Self::Iso(iso) => {
                 let mut sheet = Sheet::new(iso.net);
-                match (sheet.triangle, iso.held) {
-                    (true, _) => sheet.cut(iso.ends()),
-                    (false, Held::First) => sheet.hold_first(iso.at),
-                    (false, _) => sheet.hold_second(iso.at),
-                }
+                sheet.cut(iso.ends());
                 sheet
             }
         }
@@ -290,12 +288,14 @@ fn meet<'b>(curve: SpaceCurve<'_>, net: SurfaceNet<'_>, out: &'b mut [Hit]) -> R
         used += 1;
         Ok(())
     };
-    let found = roots::find(&pair, LINE, PAIRS, |spot, touching| {
+    // The curve is the edge v = 0 of its net of degrees (n, 0).
+    let edge = Line::edge(line, 0, 2);
+    let found = roots::find(&pair, edge, Region::ROOT, PAIRS, &mut [Part::BLANK; 2], |spot, touching| {
         enter(Hit::new(&pair, spot, if touching { HitKind::Touching } else { HitKind::Crossing }))
     })?;
-    let mut undecided = found.undecided;
+    let mut undecided = found.undecided.saturating_add(found.touching);
     for part in found.parts.into_iter().flatten() {
-        match part.ends(&pair, LINE) {
+        match part.ends(&pair, &edge) {
             Some([begin, end]) => {
                 enter(Hit::new(&pair, &begin, HitKind::Begin))?;
                 enter(Hit::new(&pair, &end, HitKind::End))?;
@@ -307,9 +307,6 @@ fn meet<'b>(curve: SpaceCurve<'_>, net: SurfaceNet<'_>, out: &'b mut [Hit]) -> R
     sort(points);
     Ok(Hits { points, undecided })
 }
-
-/// The curve as an edge of its net of degrees (n, 0).
-const LINE: (usize, usize) = (0, 2);
 
 /// In the order of t: few points, by insertion.
 fn sort(points: &mut [Hit]) {

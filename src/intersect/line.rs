@@ -1,9 +1,46 @@
-//! Curves as nets of degrees (n, 0): evaluated at (t, 0) they are what their only row is.
+//! Lines in the domain of a patch, edges above all, and curves in space as nets of degrees (n, 0): those have one row only,
+//! and their edge v = 0 is all of them.
 
-use super::part::triangle_blossom;
-use super::sheet::{Homogeneous, ONE, Place, Sheet, between};
+use super::part::{piece, triangle_blossom};
+use super::sheet::{Homogeneous, ONE, PARAMETER_BITS, Place, Sheet, between};
 use crate::num::Real;
 use crate::patch::{CurveNet, MAX_DEGREE, RationalCurveNet, RationalTensorNet, SurfaceNet, TensorNet};
+
+/// A line in the domain of a patch of a pair, with the parameter t, 0 ..= 1 in units of 2^-48; each of its parameters rises
+/// or falls by a power of two on the way, or not at all.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    pub(super) side: usize,
+    /// The edge that it is, if it is one.
+    pub(super) edge: Option<usize>,
+    pub(super) from: Place,
+    pub(super) to: Place,
+}
+
+impl Line {
+    pub(super) fn edge(sheet: &Sheet<'_>, side: usize, edge: usize) -> Self {
+        let [from, to] = [0, ONE].map(|t| sheet.edge_place(edge, t));
+        Self { side, edge: Some(edge), from, to }
+    }
+
+    pub(super) fn place(&self, t: i64) -> Place {
+        let step = |from: i64, to: i64| from + ((i128::from(to - from) * i128::from(t)) >> PARAMETER_BITS) as i64;
+        [step(self.from[0], self.to[0]), step(self.from[1], self.to[1])]
+    }
+
+    /// The parameter of a place on the line.
+    pub(super) fn parameter(&self, place: Place) -> i64 {
+        let k = usize::from(self.from[0] == self.to[0]);
+        let (size, far) = (self.to[k] - self.from[k], place[k] - self.from[k]);
+        let shift = PARAMETER_BITS as u32 - size.trailing_zeros().min(PARAMETER_BITS as u32);
+        (far << shift) * size.signum()
+    }
+
+    /// How fast the patch's parameters grow.
+    pub(super) fn direction(&self) -> [Real; 2] {
+        both!(|k| Real::new(self.to[k] - self.from[k], -PARAMETER_BITS))
+    }
+}
 
 type Row = [Homogeneous; MAX_DEGREE + 1];
 
@@ -39,8 +76,8 @@ impl<'a> Sheet<'a> {
         (self.triangle, self.degrees) = (false, (degree, 0));
     }
 
-    /// Becomes the curve of a tensor-product patch on which its first parameter is `t`.
-    pub(super) fn hold_first(&mut self, t: i64) {
+    /// The control points of the curve of a tensor-product patch on which its first parameter is `t`.
+    fn held_first(&self, t: i64) -> (Row, usize) {
         let (m, h) = self.degrees;
         let mut out = [[0; 4]; MAX_DEGREE + 1];
         for (j, out) in out.iter_mut().enumerate().take(h + 1) {
@@ -50,11 +87,11 @@ impl<'a> Sheet<'a> {
             }
             *out = value(column, m, t);
         }
-        self.become_row(&out, h);
+        (out, h)
     }
 
     /// The same for its second parameter.
-    pub(super) fn hold_second(&mut self, t: i64) {
+    fn held_second(&self, t: i64) -> (Row, usize) {
         let (m, h) = self.degrees;
         let mut out = [[0; 4]; MAX_DEGREE + 1];
         for (out, points) in out.iter_mut().zip(self.net.chunks(h + 1)).take(m + 1) {
@@ -64,17 +101,29 @@ impl<'a> Sheet<'a> {
             }
             *out = value(row, h, t);
         }
-        self.become_row(&out, m);
+        (out, m)
     }
 
-    /// Becomes the curve of a triangular patch over the line between two places.
-    pub(super) fn cut(&mut self, [from, to]: [Place; 2]) {
-        let n = self.degrees.0.min(MAX_DEGREE);
-        let mut out = [[0; 4]; MAX_DEGREE + 1];
-        for (k, out) in out.iter_mut().enumerate().take(n + 1) {
-            *out = triangle_blossom(&self.net, n, &[from, to, from], [n - k, k, 0]);
+    /// The control points of the curve over the line between two places, parallel to an axis but on a triangle, and its degree.
+    pub(super) fn row(&self, from: Place, to: Place) -> (Row, usize) {
+        if self.triangle {
+            let n = self.degrees.0.min(MAX_DEGREE);
+            let mut out = [[0; 4]; MAX_DEGREE + 1];
+            for (k, out) in out.iter_mut().enumerate().take(n + 1) {
+                *out = triangle_blossom(&self.net, n, &[from, to, from], [n - k, k, 0]);
+            }
+            return (out, n);
         }
-        self.become_row(&out, n);
+        let first = from[0] == to[0];
+        let (row, n) = if first { self.held_first(from[0]) } else { self.held_second(from[1]) };
+        let along = usize::from(first);
+        (piece(&row, n, from[along], to[along]), n)
+    }
+
+    /// Becomes the curve over a line.
+    pub(super) fn cut(&mut self, [from, to]: [Place; 2]) {
+        let (row, n) = self.row(from, to);
+        self.become_row(&row, n);
     }
 
     /// Whether a curve is a point.

@@ -83,6 +83,7 @@ macro_rules! three {
     };
 }
 
+mod cells;
 mod certify;
 mod chain;
 mod contact;
@@ -116,12 +117,16 @@ pub use probe::{Projection, project};
 
 use crate::num::{Coord, Real};
 use crate::patch::SurfaceNet;
+use cells::Cells;
 use chain::{Chains, Signature};
 use grid::{Grid, box_count, vertex_count};
 use key::Crossing;
 use newton::Pair;
 use solve::Solver;
 use trace::Output;
+
+/// Pairs of parts of the loop-free test that are kept at a time where records leave no room for more.
+const FEW: usize = 32;
 
 /// Pairs of parts that are looked at to find all points of one edge on the other patch.
 const EDGE_PAIRS: u32 = 1 << 12;
@@ -451,12 +456,15 @@ fn in_order<'b>(
         descent::descend(grids, true, options.pairs, records)?;
     }
     let used = 2 * found.segments;
-    let (records, links) = (records.get_mut(..used).unwrap_or(&mut []), links.get_mut(..used).unwrap_or(&mut []));
+    let (records, spare) = records.split_at_mut_checked(used).unwrap_or((&mut [], &mut []));
+    let links = links.get_mut(..used).unwrap_or(&mut []);
+    let mut few = [0; FEW];
+    let mut cells = Cells::new(if spare.len() < FEW { &mut few } else { spare });
     let mut chains = Chains::new(records, links, found.degenerate > 0, is_border)?;
 
     // A region of coincidence is a contact everywhere.
     let tested = options.certificate_pairs > 0 && !edges.overlap;
-    let report = if tested { Some(solver.contacts(options.certificate_pairs)?) } else { None };
+    let report = if tested { Some(solver.contacts(options.certificate_pairs, &mut cells)?) } else { None };
     solver.arms()?;
     solver.borders(grids, &mut chains)?;
     solver.chains(grids, &mut chains)?;
@@ -464,6 +472,9 @@ fn in_order<'b>(
     if let Some(report) = &report {
         solver.around(report)?;
         solver.leftovers(report)?;
+    }
+    if tested && solver.undecided == 0 {
+        solver.passages(&mut cells)?;
     }
     let undecided = solver.undecided.max(u32::from(edges.overlap));
     let Output { points, used, curves, curve_count, branches, branch_count, .. } = solver.out;

@@ -6,6 +6,7 @@
 //! angle whose sine is at most that over sin γ (after Sederberg and Meyers 1988). A rational part has the derivatives
 //! (A' − S w')/w; moved to its centre, |S| is at most its radius, which widens the cone.
 
+use super::line::Line;
 use super::sheet::{Homogeneous, ONE, PARAMETER_BITS, Place, Sheet};
 use super::vector::V3;
 use crate::num::Real;
@@ -59,6 +60,30 @@ impl Region {
         [0, 1].map(|d| Self { level: self.level + 1, i: 2 * self.i + d, ..self })
     }
 
+    /// The borders of a part that it shares with parts before it, each with its ends; a triangle's third one too. Between
+    /// neighbours every border is one of these of one of them, and of the other none.
+    pub(super) fn borders(self, triangle: bool) -> [Option<[Place; 2]>; 3] {
+        if self.upper {
+            return [None; 3];
+        }
+        let [low, u, v] = [self.place(0, 0), self.place(1, 0), self.place(0, 1)];
+        let inner = |outside: bool, ends: [Place; 2]| (!outside).then_some(ends);
+        [inner(self.i == 0, [low, v]), inner(self.j == 0, [low, u]), inner(!triangle || u[0] + u[1] >= ONE, [u, v])]
+    }
+
+    /// In 32 bits.
+    pub(super) fn pack(self) -> u32 {
+        u32::from(self.level) << 28
+            | u32::from(self.i & 0x1fff) << 15
+            | u32::from(self.j & 0x1fff) << 2
+            | u32::from(self.upper)
+    }
+
+    pub(super) fn unpack(bits: u32) -> Self {
+        let part = |shift: u32| (bits >> shift) as u16 & 0x1fff;
+        Self { level: (bits >> 28) as u8, i: part(15), j: part(2), upper: bits & 1 == 1 }
+    }
+
     /// The ends of a part of a line.
     pub(super) fn range(self) -> [i64; 2] {
         [self.place(0, 0)[0], self.place(1, 0)[0]]
@@ -109,6 +134,17 @@ pub(super) struct Part {
     high: [i64; 3],
     pub(super) cone: Cone,
     is_aimed: bool,
+}
+
+/// How two parts can meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Meeting {
+    /// Not at all.
+    Apart,
+    /// In curves that go through, none of them closed; they touch nowhere.
+    Through,
+    /// In any way.
+    Any,
 }
 
 /// Directions of normals about an axis, up to sign.
@@ -164,21 +200,32 @@ fn step(values: &mut [Homogeneous; MAX_DEGREE + 1], i: usize, t: i64) {
     values[i] = lerp(&values[i], &values[i + 1], t);
 }
 
-/// The control points of the part low ..= high of a curve: the blossom at low^(n−k) high^k.
-fn piece(values: &[Homogeneous; MAX_DEGREE + 1], n: usize, low: i64, high: i64) -> [Homogeneous; MAX_DEGREE + 1] {
-    let mut out = [[0; 4]; MAX_DEGREE + 1];
-    let mut start = *values;
-    // `start` holds the values after n − k steps at `low`; k steps at `high` remain.
-    for k in (0..=n.min(MAX_DEGREE)).rev() {
-        let mut rest = start;
-        for left in (1..=k).rev() {
-            for i in 0..left {
-                step(&mut rest, i, high);
+/// The control points of the part low ..= high of a curve; both are multiples of 2^-14.
+///
+/// First the part up to `high`, then what is after low/high of that: n (n + 1) steps of de Casteljau's algorithm. The quotient
+/// is rounded to 2^-48, which moves points by less than 2^-30 unit.
+pub(super) fn piece(
+    values: &[Homogeneous; MAX_DEGREE + 1],
+    n: usize,
+    low: i64,
+    high: i64,
+) -> [Homogeneous; MAX_DEGREE + 1] {
+    let mut out = *values;
+    let n = n.min(MAX_DEGREE);
+    if high < ONE {
+        for k in 1..=n {
+            for i in (k..=n).rev() {
+                let (before, i) = (i.saturating_sub(1).min(MAX_DEGREE), i.min(MAX_DEGREE));
+                out[i] = lerp(&out[before], &out[i], high);
             }
         }
-        out[k.min(MAX_DEGREE)] = rest[0];
-        for i in 0..k {
-            step(&mut start, i, low);
+    }
+    if low > 0 {
+        let share = ((low >> 34) << PARAMETER_BITS).checked_div(high >> 34).unwrap_or(0);
+        for left in (1..=n).rev() {
+            for i in 0..left {
+                step(&mut out, i, share);
+            }
         }
     }
     out
@@ -273,17 +320,23 @@ impl Part {
         self.finish(&net, sheet, region);
     }
 
-    /// Becomes the part of an edge of a patch over an interval.
+    /// Becomes the part of a line of a patch over an interval.
     #[inline(never)]
-    pub(super) fn load_edge(&mut self, sheet: &Sheet<'_>, edge: usize, region: Region) {
-        let n = sheet.edge_degree(edge).min(MAX_DEGREE);
-        let mut row = [[0; 4]; MAX_DEGREE + 1];
-        for (k, out) in row.iter_mut().enumerate().take(n + 1) {
-            *out = sheet.edge_index(edge, k).and_then(|at| sheet.net.get(at)).copied().unwrap_or([0; 4]);
-        }
+    pub(super) fn load_line(&mut self, sheet: &Sheet<'_>, line: &Line, region: Region) {
         let [low, high] = region.range();
+        let (row, n) = match line.edge {
+            Some(edge) => {
+                let n = sheet.edge_degree(edge).min(MAX_DEGREE);
+                let mut row = [[0; 4]; MAX_DEGREE + 1];
+                for (k, out) in row.iter_mut().enumerate().take(n + 1) {
+                    *out = sheet.edge_index(edge, k).and_then(|at| sheet.net.get(at)).copied().unwrap_or([0; 4]);
+                }
+                (piece(&row, n, low, high), n)
+            }
+            None => sheet.row(line.place(low), line.place(high)),
+        };
         let mut net = [[0; 4]; ROOM];
-        for (out, value) in net.iter_mut().zip(piece(&row, n, low, high)) {
+        for (out, value) in net.iter_mut().zip(row) {
             *out = value;
         }
         (self.triangle, self.degrees, self.count) = (false, (n, 0), n + 1);
@@ -352,6 +405,20 @@ impl Part {
 
     pub(super) fn boxes_meet(&self, other: &Self) -> bool {
         (0..3).all(|k| self.low[k] <= other.high[k] + SLACK && other.low[k] <= self.high[k] + SLACK)
+    }
+
+    /// What the hulls and the cones of normals say of two parts.
+    pub(super) fn meeting(&mut self, other: &mut Self) -> Meeting {
+        if !self.boxes_meet(other) {
+            return Meeting::Apart;
+        }
+        self.aim();
+        other.aim();
+        let (one, two) = (self.cone, other.cone);
+        if [one.axis, two.axis].into_iter().any(|axis| !axis.is_zero() && self.is_apart_along(other, axis)) {
+            return Meeting::Apart;
+        }
+        if one.is_narrow() && two.is_narrow() && one.is_apart(&two) { Meeting::Through } else { Meeting::Any }
     }
 
     /// Whether a plane across a direction lies between the hulls.

@@ -118,30 +118,54 @@ impl Plane {
     }
 
     /// The axis along which the normal is longest: over the other two the plane is no steeper than 45 degrees.
-    fn axis(&self) -> usize {
+    fn axis(&self) -> Axis {
         let [x, y, z] = self.normal.map(i64::abs);
-        if z >= x && z >= y { 2 } else { usize::from(y > x) }
+        if z >= x && z >= y {
+            Axis::Z
+        } else if y > x {
+            Axis::Y
+        } else {
+            Axis::X
+        }
     }
 
     /// Corners of a parallelogram in the plane, in units of 2^-44, over a box, in units of 2^-16, in two coordinates.
     fn corners(&self, [low, high]: [[i64; 3]; 2]) -> Result<[[i64; 3]; 4], IntersectError> {
         let k = self.axis();
-        // In cyclic order, or the other way round, so that Su × Sv points along the normal.
-        let (i, j) = if self.normal[k] > 0 { ((k + 1) % 3, (k + 2) % 3) } else { ((k + 2) % 3, (k + 1) % 3) };
+        let ([a, b, c], low, high) = (turned(self.normal, k), turned(low, k), turned(high, k));
         let mut out = [[0; 3]; 4];
         for (corner, far) in out.iter_mut().zip([[false, false], [false, true], [true, false], [true, true]]) {
-            let [a, b] = [(i, far[0]), (j, far[1])].map(|(axis, far)| if far { high[axis] } else { low[axis] });
-            let products = i128::from(a) * i128::from(self.normal[i]) + i128::from(b) * i128::from(self.normal[j]);
-            let sign = i128::from(self.normal[k].signum());
-            let rest = (i128::from(self.offset) - products) * sign;
-            let c = div_half_up(rest << (POINT_BITS - 16), i128::from(self.normal[k].abs())).unwrap_or(0);
+            // In cyclic order, or the other way round, so that Su × Sv points along the normal.
+            let [f, g] = if c > 0 { far } else { [far[1], far[0]] };
+            let (x, y) = (if f { high[0] } else { low[0] }, if g { high[1] } else { low[1] });
+            let products = i128::from(x) * i128::from(a) + i128::from(y) * i128::from(b);
+            let rest = (i128::from(self.offset) - products) * i128::from(c.signum());
+            let z = div_half_up(rest << (POINT_BITS - 16), i128::from(c.abs())).unwrap_or(0);
             let limit = i128::from(LIMIT) << (POINT_BITS - 16);
-            if c > limit || c < -limit {
-                return Err(IntersectError::Plane { units: (c >> POINT_BITS) as i64 });
+            if z > limit || z < -limit {
+                return Err(IntersectError::Plane { units: (z >> POINT_BITS) as i64 });
             }
-            (corner[i], corner[j], corner[k]) = (a << (POINT_BITS - 16), b << (POINT_BITS - 16), c as i64);
+            *corner = restored([x << (POINT_BITS - 16), y << (POINT_BITS - 16), z as i64], k);
         }
         Ok(out)
+    }
+}
+
+/// The coordinates in cyclic order, that of the axis last.
+const fn turned([x, y, z]: [i64; 3], axis: Axis) -> [i64; 3] {
+    match axis {
+        Axis::X => [y, z, x],
+        Axis::Y => [z, x, y],
+        Axis::Z => [x, y, z],
+    }
+}
+
+/// The inverse of [`turned`].
+const fn restored([a, b, c]: [i64; 3], axis: Axis) -> [i64; 3] {
+    match axis {
+        Axis::X => [c, a, b],
+        Axis::Y => [b, c, a],
+        Axis::Z => [a, b, c],
     }
 }
 

@@ -1,6 +1,6 @@
 //! Where a curve meets a surface: all points, with a proof that there are no others.
 //!
-//! The curve is an edge of one patch of a pair. Parts of it and parts of the other patch are halved, the longer one first,
+//! The curve is an edge of one patch of a pair, or a line in its domain. Parts of it and parts of the other patch are halved, the longer one first,
 //! until a plane lies between their hulls, or they meet in one point at most: if no tangent of the curve is orthogonal to a
 //! normal of the surface, both within rigorous cones, then (t, u, v) ↦ S(u, v) − C(t) has the mean derivatives
 //! (Su, Sv, −C') with a determinant that is nowhere 0, and takes no value twice. There Newton's method finds the point; if it
@@ -8,7 +8,8 @@
 //! is where the curve touches the surface or lies on it: such pairs are looked at by themselves.
 
 use super::IntersectError;
-use super::newton::{Pair, Spot};
+use super::line::Line;
+use super::newton::{Pair, Places, Spot, difference, pull_back, shifted};
 use super::part::{Directions, Part, Region};
 use super::sheet::{ONE, Place};
 use super::trace::BORDER;
@@ -43,26 +44,28 @@ pub(super) struct Lying {
 pub(super) struct Roots {
     /// Parts of the curve that lie on the surface, apart and rising.
     pub(super) parts: [Option<Lying>; PARTS],
-    /// Pairs of parts about which nothing certain can be said.
+    /// Pairs of parts about which nothing certain can be said, beside touching points.
     pub(super) undecided: u32,
+    /// Points where the curve touches the surface.
+    pub(super) touching: u32,
     /// Pairs of parts looked at.
     pub(super) visited: u32,
 }
 
 impl Lying {
     /// The spot of a parameter within the range; its foot is found in steps of a sixteenth of the way.
-    pub(super) fn spot(&self, pair: &Pair<'_>, (side, edge): (usize, usize), t: i64) -> Option<Spot> {
+    pub(super) fn spot(&self, pair: &Pair<'_>, line: &Line, t: i64) -> Option<Spot> {
         let (mut near, mut spot) = (self.foot, None);
         for k in 1..=16 {
             let on_way = if k == 16 { t } else { self.at + (t - self.at) / 16 * k };
-            spot = pair.on_surface(side, edge, on_way, near, BORDER);
-            near = spot?.at[(1 - side) & 1];
+            spot = pair.on_surface(line, on_way, near, BORDER);
+            near = spot?.at[1 - (line.side & 1)];
         }
         spot
     }
 
     /// The ends: by halving, since the search ended within some of its last steps from them.
-    pub(super) fn ends(&self, pair: &Pair<'_>, line: (usize, usize)) -> Option<[Spot; 2]> {
+    pub(super) fn ends(&self, pair: &Pair<'_>, line: &Line) -> Option<[Spot; 2]> {
         let [start, end] = self.range;
         let (mut low, mut high) = (self.spot(pair, line, start)?, self.spot(pair, line, end)?);
         if start > 0 {
@@ -76,21 +79,61 @@ impl Lying {
 }
 
 impl Pair<'_> {
-    /// The spot of an edge's parameter if it lies on the other patch, up to `slack` of its domain.
-    fn on_surface(&self, side: usize, edge: usize, parameter: i64, near: Place, slack: i64) -> Option<Spot> {
-        let spot = self.edge_spot(side, edge, parameter, near)?;
-        let on =
-            spot.residual <= self.touching() && self.sheets[(1 - side) & 1].contains(spot.at[(1 - side) & 1], slack);
+    /// The spot of a parameter of a line, with its foot on the other patch searched from `near`; the tangent is the line's.
+    fn line_spot(&self, line: &Line, t: i64, near: Place) -> Option<Spot> {
+        if let Some(edge) = line.edge {
+            return self.edge_spot(line.side, edge, t, near);
+        }
+        let (one, other) = (line.side & 1, 1 - (line.side & 1));
+        let place = line.place(t);
+        let jet = self.sheets[one].eval(place, 1)?;
+        let (foot, under) = self.foot(other, near, jet.point)?;
+        let (at, jets) = if one == 0 { ([place, foot], [jet, under]) } else { ([foot, place], [under, jet]) };
+        let mut spot = self.spot(at, &jets);
+        let [a, b] = line.direction();
+        spot.tangent = (jet.first[0] * a + jet.first[1] * b).unit();
+        Some(spot)
+    }
+
+    /// The same if it lies on the other patch, up to `slack` of its domain.
+    fn on_surface(&self, line: &Line, t: i64, near: Place, slack: i64) -> Option<Spot> {
+        let other = 1 - (line.side & 1);
+        let spot = self.line_spot(line, t, near)?;
+        let on = spot.residual <= self.touching() && self.sheets[other].contains(spot.at[other], slack);
         on.then_some(spot)
+    }
+
+    /// The point where a line of one patch meets the other, near `at`.
+    #[inline(never)]
+    fn on_line(&self, line: &Line, mut at: Places) -> Option<Spot> {
+        let (one, other) = (line.side & 1, 1 - (line.side & 1));
+        let direction = line.direction();
+        for round in 0..16 {
+            let jets = self.jets(at, 1)?;
+            let r = difference(jets[other].point, jets[one].point);
+            if round > 0 && r.square() <= self.accept.square() {
+                return Some(self.spot(at, &jets));
+            }
+            let along = jets[one].first[0] * direction[0] + jets[one].first[1] * direction[1];
+            let normal = jets[other].normal();
+            let across = normal.dot(along);
+            if across.is_zero() {
+                return None;
+            }
+            let step = normal.dot(r) / across;
+            at[other] = shifted(at[other], pull_back(&jets[other].first, normal, along * step - r));
+            at[one] = shifted(at[one], direction.map(|d| d * step));
+        }
+        None
     }
 }
 
 /// The last spot on the surface between a parameter on it and one that is not.
-fn last_on(pair: &Pair<'_>, (side, edge): (usize, usize), on: Spot, mut low: i64, mut high: i64) -> Spot {
+fn last_on(pair: &Pair<'_>, line: &Line, on: Spot, mut low: i64, mut high: i64) -> Spot {
     let mut last = on;
     for _ in 0..48 {
         let middle = (low + high) >> 1;
-        match pair.on_surface(side, edge, middle, last.at[(1 - side) & 1], 4) {
+        match pair.on_surface(line, middle, last.at[1 - (line.side & 1)], 4) {
             Some(spot) => (low, last) = (middle, spot),
             None => high = middle,
         }
@@ -120,8 +163,7 @@ enum Verdict {
 
 struct Search<'s, 'a, F> {
     pair: &'s Pair<'a>,
-    side: usize,
-    edge: usize,
+    line: Line,
     visit: F,
     failure: Result<(), IntersectError>,
     touches: [Option<(i64, Place)>; TOUCHES],
@@ -132,13 +174,12 @@ struct Search<'s, 'a, F> {
 
 impl<F: FnMut(&Spot, bool) -> Result<(), IntersectError>> Search<'_, '_, F> {
     fn other(&self) -> usize {
-        1 - (self.side & 1)
+        1 - (self.line.side & 1)
     }
 
     /// The parameter on the curve and the place on the surface.
     fn split(&self, spot: &Spot) -> (i64, Place) {
-        let sheet = &self.pair.sheets[self.side & 1];
-        (sheet.edge_parameter(self.edge, spot.at[self.side & 1]), spot.at[self.other()])
+        (self.line.parameter(spot.at[self.line.side & 1]), spot.at[self.other()])
     }
 
     fn judge(&mut self, line: &mut Part, part: &mut Part, over: [Region; 2]) -> Verdict {
@@ -177,13 +218,16 @@ impl<F: FnMut(&Spot, bool) -> Result<(), IntersectError>> Search<'_, '_, F> {
 
     /// Finds the only point of a pair of parts; whether it, or that there is none, is now known.
     fn single(&mut self, over: [Region; 2]) -> bool {
-        let sheets = &self.pair.sheets;
-        let (own, other) = (&sheets[self.side & 1], &sheets[self.other()]);
+        let other = &self.pair.sheets[self.other()];
         let [low, high] = over[0].range();
-        let start = own.edge_place(self.edge, (low + high) >> 1);
+        let start = self.line.place((low + high) >> 1);
         let place = over[1].centre(other.triangle);
-        let at = if self.side & 1 == 0 { [start, place] } else { [place, start] };
-        let Some(spot) = self.pair.on_edge(self.side, self.edge, at) else { return false };
+        let at = if self.line.side & 1 == 0 { [start, place] } else { [place, start] };
+        let found = match self.line.edge {
+            Some(edge) => self.pair.on_edge(self.line.side, edge, at),
+            None => self.pair.on_line(&self.line, at),
+        };
+        let Some(spot) = found else { return false };
         let (t, place) = self.split(&spot);
         let slack = slack(over[0].level);
         if t < low - slack || t > high + slack || !over[1].contains(place, other.triangle, self::slack(over[1].level)) {
@@ -203,7 +247,7 @@ impl<F: FnMut(&Spot, bool) -> Result<(), IntersectError>> Search<'_, '_, F> {
 
     /// The curve's point at a parameter, its foot on the surface, and the sine of the curve's angle with it there, signed.
     fn slope(&self, t: i64, near: Place) -> Option<(Spot, Real)> {
-        let spot = self.pair.edge_spot(self.side, self.edge, t, near)?;
+        let spot = self.pair.line_spot(&self.line, t, near)?;
         let jet = self.pair.sheets[self.other()].eval(spot.at[self.other()], 1)?;
         Some((spot, jet.normal().unit().dot(spot.tangent)))
     }
@@ -295,7 +339,7 @@ impl<F: FnMut(&Spot, bool) -> Result<(), IntersectError>> Search<'_, '_, F> {
         if let Some(free) = self.touches.iter_mut().find(|t| t.is_none()) {
             *free = Some(found);
         }
-        self.roots.undecided = self.roots.undecided.saturating_add(1);
+        self.roots.touching = self.roots.touching.saturating_add(1);
         self.give(spot, true);
     }
 
@@ -329,13 +373,10 @@ impl<F: FnMut(&Spot, bool) -> Result<(), IntersectError>> Search<'_, '_, F> {
 
     /// What can be said of them, and of parts too short, when all else is known.
     fn finish(&mut self) {
-        for k in 0..PARTS {
-            let Some(Some(part)) = self.roots.parts.get(k).copied() else { continue };
-            if part.range[1] - part.range[0] < SHORTEST {
-                self.roots.parts[k] = None;
-                if let Some((spot, _)) = self.slope(part.at, part.foot) {
-                    self.enter_touch(&spot);
-                }
+        let short = |part: &mut Lying| part.range[1] - part.range[0] < SHORTEST;
+        while let Some(part) = self.roots.parts.iter_mut().find_map(|place| place.take_if(short)) {
+            if let Some((spot, _)) = self.slope(part.at, part.foot) {
+                self.enter_touch(&spot);
             }
         }
         let slack = ONE >> (DEEPEST_LINE - 3);
@@ -354,22 +395,26 @@ impl<F: FnMut(&Spot, bool) -> Result<(), IntersectError>> Search<'_, '_, F> {
     }
 }
 
-/// Finds all points where an edge of one patch meets the other and calls `visit` with each, and with whether the curve
-/// touches the surface there. A point in the border of two parts comes twice. Looks at `budget` pairs of parts at most.
+/// Finds all points where a line on one patch meets the other, or a part of the other, and calls `visit` with each, and with whether the curve
+/// touches the surface there. A point in the border of two parts comes twice. Looks at `budget` pairs of parts at most, in
+/// `parts`: the second is empty or a part of that patch.
 #[inline(never)]
 pub(super) fn find(
     pair: &Pair<'_>,
-    (side, edge): (usize, usize),
+    line: Line,
+    over: Region,
     budget: u32,
+    parts: &mut [Part; 2],
     visit: impl FnMut(&Spot, bool) -> Result<(), IntersectError>,
 ) -> Result<Roots, IntersectError> {
-    let roots = Roots { parts: [None; PARTS], undecided: 0, visited: 0 };
+    let roots = Roots { parts: [None; PARTS], undecided: 0, touching: 0, visited: 0 };
     let mut search =
-        Search { pair, side, edge, visit, failure: Ok(()), touches: [None; TOUCHES], doubts: [None; TOUCHES], roots };
-    let sheets = [&pair.sheets[side & 1], &pair.sheets[1 - (side & 1)]];
-    let mut stack = [[Region::ROOT; 2]; STACK];
+        Search { pair, line, visit, failure: Ok(()), touches: [None; TOUCHES], doubts: [None; TOUCHES], roots };
+    let sheets = [&pair.sheets[line.side & 1], &pair.sheets[1 - (line.side & 1)]];
+    let mut stack = [[Region::ROOT, over]; STACK];
     let mut height = 1;
-    let mut parts = [Part::BLANK; 2];
+    let [curve, part] = parts;
+    curve.region = None;
     while height > 0 && search.failure.is_ok() {
         height -= 1;
         let Some(over) = stack.get(height).copied() else { break };
@@ -378,18 +423,17 @@ pub(super) fn find(
             break;
         }
         search.roots.visited += 1;
-        let [line, part] = &mut parts;
-        if line.region != Some(over[0]) {
-            line.load_edge(sheets[0], edge, over[0]);
+        if curve.region != Some(over[0]) {
+            curve.load_line(sheets[0], &line, over[0]);
         }
         if part.region != Some(over[1]) {
             part.load(sheets[1], over[1]);
         }
-        if search.judge(line, part, over) == Verdict::Decided {
+        if search.judge(curve, part, over) == Verdict::Decided {
             continue;
         }
         let ends = [over[0].level >= DEEPEST_LINE, over[1].level >= DEEPEST];
-        if ends[0] || (!ends[1] && part.size() > line.size()) {
+        if ends[0] || (!ends[1] && part.size() > curve.size()) {
             for quarter in over[1].quarters(sheets[1].triangle) {
                 if let Some(place) = stack.get_mut(height) {
                     *place = [over[0], quarter];

@@ -1,5 +1,6 @@
 //! From seeds to curves: borders, contacts, arms of branches, and every chain of the mesh that no curve covers yet.
 
+use super::cells::{self, Cells};
 use super::certify::{self, Query, Report};
 use super::chain::Chains;
 use super::contact::{Contact, Form};
@@ -184,10 +185,11 @@ impl Solver<'_, '_, '_> {
     }
 
     /// Runs the loop-free test and enters what its contacts are: touching points, tangential curves, branches.
-    pub(super) fn contacts(&mut self, budget: u32) -> Result<Report, IntersectError> {
+    /// Keeps the pairs through which curves go.
+    pub(super) fn contacts(&mut self, budget: u32, cells: &mut Cells<'_>) -> Result<Report, IntersectError> {
         let mut failure = Ok(());
         let pair = self.pair;
-        let report = certify::test(pair, budget, |query| {
+        let report = certify::test(pair, budget, cells, |query| {
             let contact = match query {
                 Query::Contact(contact) => contact,
                 Query::Near(point, reach) => return self.touches_near(point, reach),
@@ -355,15 +357,35 @@ impl Solver<'_, '_, '_> {
             if self.is_covered(root.bits()) {
                 continue;
             }
-            let at = root.places();
-            let Some(jets) = self.pair.jets(at, 1) else { continue };
-            let spot = self.pair.spot(at, &jets);
-            if spot.sine > SINGULAR {
-                self.follow(Locus::Crossing, spot)?;
-            } else {
-                self.undecided += u32::from(!self.is_explained(spot.point));
-            }
+            self.seed(root.places())?;
         }
+        Ok(())
+    }
+
+    /// Follows curves from where they pass between parts of the loop-free test, if none is known there.
+    pub(super) fn passages(&mut self, cells: &mut Cells<'_>) -> Result<(), IntersectError> {
+        let pair = self.pair;
+        let mut k = 0;
+        while let Some(cell) = cells.get(pair, k) {
+            let undecided =
+                cells::pass(pair, cell, |spot| if self.is_covered(spot.point) { Ok(()) } else { self.seed(spot.at) })?;
+            self.undecided = self.undecided.saturating_add(undecided);
+            k += 1;
+        }
+        Ok(())
+    }
+
+    /// Follows the curve through a place on both surfaces.
+    fn seed(&mut self, at: Places) -> Result<(), IntersectError> {
+        let Some(jets) = self.pair.jets(at, 1) else {
+            self.undecided += 1;
+            return Ok(());
+        };
+        let spot = self.pair.spot(at, &jets);
+        if spot.sine > SINGULAR {
+            return self.follow(Locus::Crossing, spot);
+        }
+        self.undecided += u32::from(!self.is_explained(spot.point));
         Ok(())
     }
 
