@@ -102,20 +102,27 @@ struct Facet {
     normal: [i128; 3],
 }
 
-fn facets(grid: &Grid<'_>, node: Node, found: &mut Found) -> [Option<Facet>; 2] {
-    [false, true].map(|upper| {
-        if upper && !grid.has_upper(node.i.into(), node.j.into()) {
-            return None;
-        }
-        let cell = Cell { i: node.i, j: node.j, upper };
-        let corners = cell.corners().map(|(i, j)| grid.vertex(i, j));
-        let normal = normal(corners);
-        if is_degenerate(&normal) {
-            found.degenerate = found.degenerate.saturating_add(1);
-            return None;
-        }
-        Some(Facet { cell, corners, normal })
-    })
+/// A triangle of a cell, unless the domain ends before it or it has no normal.
+#[inline(always)]
+fn facet(grid: &Grid<'_>, node: Node, upper: bool, found: &mut Found) -> Option<Facet> {
+    if upper && !grid.has_upper(node.i.into(), node.j.into()) {
+        return None;
+    }
+    let cell = Cell { i: node.i, j: node.j, upper };
+    let places = cell.corners();
+    let corners = three!(|k| grid.vertex(places[k].0, places[k].1));
+    let normal = normal(corners);
+    if is_degenerate(&normal) {
+        found.degenerate = found.degenerate.saturating_add(1);
+        return None;
+    }
+    Some(Facet { cell, corners, normal })
+}
+
+/// The signs of a triangle's corners over another's plane.
+#[inline(always)]
+fn signs(perturbation: &mut Perturbation, f: &Facet, g: &Facet, of_a: bool) -> [bool; 3] {
+    three!(|k| perturbation.side(&g.normal, g.corners[0], f.corners[k], of_a))
 }
 
 /// The pairs of triangles of two cells.
@@ -126,14 +133,11 @@ fn cells(
     found: &mut Found,
     records: &mut [u64],
 ) -> Result<(), IntersectError> {
-    let [of_a, of_b] = both!(|s| facets(grids[s], pair[s], found));
+    let [of_a, of_b] = both!(|s| both!(|k| facet(grids[s], pair[s], k == 1, found)));
     for a in of_a.iter().flatten() {
         for b in of_b.iter().flatten() {
             let mut crossings = [None; 2];
             let mut count = 0;
-            let signs = |p: &mut Perturbation, f: &Facet, g: &Facet, of_a| {
-                f.corners.map(|x| p.side(&g.normal, g.corners[0], x, of_a))
-            };
             let a_signs = signs(perturbation, a, b, true);
             if a_signs == [a_signs[0]; 3] {
                 continue;

@@ -1,8 +1,8 @@
 //! Edges that lie on the other patch: shared edges, edges on a surface, borders of regions where the surfaces coincide.
 //!
 //! An edge is looked at before anything else: on it the surfaces meet in no point that a mesh could find reliably. Shared
-//! edges are found by exact comparison of control points; parts of edges on a surface by samples whose feet are at no
-//! distance, their ends by bisection.
+//! edges are found by exact comparison of control points; of all others the points on the other patch, and the parts on it, by
+//! halving, with proof (`roots`). Crossings are set aside until it is known which curves end there.
 
 use super::IntersectError;
 use super::curve::{Curve, CurveKind, CurvePoint};

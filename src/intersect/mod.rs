@@ -7,9 +7,10 @@
 //! * Every point lies within [`Curve::residual`] of both surfaces, less than 10^-9 unit for patches up to a few thousand
 //!   units across; every piece is within [`Options::tolerance`] of the curve, or counted in [`Curve::unrefined`].
 //! * What cannot be decided is counted in [`Intersection::undecided`], never left out in silence.
-//!   [`Intersection::is_certified`] says that the loop-free test left nothing: no closed curve and no tangency lies in any pair
-//!   of parts. A tangency is never certified, only found: whether surfaces touch or miss each other by less than the
-//!   arithmetic resolves is not decidable.
+//!   [`Intersection::is_certified`] says that nothing was, and then no curve is missing: no closed curve and no tangency lies in
+//!   any pair of parts, all points are known where an edge meets the other patch and where a curve passes between parts, and a
+//!   curve that is returned comes within eight tolerances of each. A tangency is never certified, only found: whether
+//!   surfaces touch or miss each other by less than the arithmetic resolves is not decidable.
 //! * The result does not depend on the order of the arguments; equal input gives equal bits on every target.
 //!
 //! # How
@@ -23,9 +24,11 @@
 //! | `grid` | net → exact vertices at (i/2^m, j/2^m), rounded once; boxes over them |
 //! | `descent`, `predicate`, `key`, `chain` | two grids → crossings, segments, chains |
 //! | `sheet`, `newton` | net → points and derivatives; places near the curve → spots on it |
-//! | `edges` | edges on the other surface: shared edges, borders of regions |
+//! | `line`, `roots` | a curve and a surface → all points where they meet, parts on the surface |
+//! | `edges` | edges on the other surface: shared edges, borders of regions, crossings |
 //! | `part`, `certify`, `contact` | the loop-free test; points with collinear normals: touching points, branches, ridges |
 //! | `trace`, `hermite`, `solve` | seeds → curves |
+//! | `cells` | pairs of parts → where curves pass from one to the next |
 //! | `plane`, `probe`, `hits` | [`section`]; [`project`]; [`curve_points`] |
 //!
 //! # What it needs
@@ -38,14 +41,17 @@
 //! | 6 | 101 400 | 262 128 | 16 368 |
 //! | 7 | 399 384 | 1 048 560 | 65 520 |
 //!
-//! A segment takes 24 bytes (two records, two links), a point 88, a curve 88. A transversal curve from border to border takes
+//! A segment takes 24 bytes (two records, two links), a point 88, a curve 88. Until curves are followed, each crossing of an
+//! edge takes a point too. Records to spare keep the pairs of parts of the loop-free test, one each; with fewer than those
+//! the test runs again. A transversal curve from border to border takes
 //! some 4·2^depth segments and, at the default tolerance, about a hundred points. Boxes below the levels that there is
 //! room for are made of vertices again and again: to depth − 2 the descent takes about twice the time. The stack is about 30 KB.
 //!
 //! # What it does not do
 //! More than two curves through one point (higher contacts), and cusps, are counted as undecided; curves end near them.
-//! A part of an edge on the other surface shorter than an eighth of the edge may be missed; so may a curve that cuts a
-//! border twice within a cell. In a pair with a region where the surfaces coincide the loop-free test is left out.
+//! An edge that touches the other surface is undecided, and so is a part of an edge on it shorter than 2^-10 of the edge.
+//! Two curves closer to each other than eight tolerances may count as one. In a pair with a region where the surfaces coincide
+//! the loop-free test is left out.
 
 /// `[body with k = 0, body with k = 1]`: indices are constants, whatever a compiler for size inlines.
 macro_rules! both {
@@ -119,6 +125,7 @@ use crate::num::{Coord, Real};
 use crate::patch::SurfaceNet;
 use cells::Cells;
 use chain::{Chains, Signature};
+use descent::Found;
 use grid::{Grid, box_count, vertex_count};
 use key::Crossing;
 use newton::Pair;
@@ -262,7 +269,7 @@ pub struct Intersection<'b> {
     points: &'b [CurvePoint],
     curves: &'b [Curve],
     branches: &'b [Branch],
-    /// Parts, chains and ends about which nothing certain can be said.
+    /// Parts, edges, chains and ends about which nothing certain can be said.
     pub undecided: u32,
     /// Predicates that were zero and decided by moving B by an infinitesimal.
     pub zero_predicates: u32,
@@ -308,7 +315,7 @@ impl<'b> Intersection<'b> {
         self.branches
     }
 
-    /// Whether the loop-free test left nothing undecided.
+    /// Whether the loop-free test ran and nothing was left undecided: no curve is missing.
     #[must_use]
     pub const fn is_certified(&self) -> bool {
         self.tested && self.undecided == 0
@@ -341,7 +348,8 @@ fn is_ordered(a: &SurfaceNet<'_>, b: &SurfaceNet<'_>) -> bool {
 
 /// The curves in which two surfaces meet.
 ///
-/// Depth 5 finds all components that are larger than two cells or so; smaller ones are found by the loop-free test. On a host a
+/// Depth 5 finds all components that are larger than two cells or so; smaller ones are found by the loop-free test, by the
+/// edges' points on the other patch and by the passages between parts. On a host a
 /// transversal pair of bicubic patches takes about a millisecond at depth 5.
 ///
 /// # Errors
@@ -445,14 +453,15 @@ fn in_order<'b>(
     };
     let mut sensitive = false;
     if found.zeros > 0 {
-        let mut signature = |positive: bool| -> Result<Signature, IntersectError> {
-            let found = descent::descend(grids, positive, options.pairs, records)?;
+        let mut signature = |found: &Found, records: &mut [u64]| -> Result<Signature, IntersectError> {
             let used = 2 * found.segments;
             let (records, links) = (records.get_mut(..used), links.get_mut(..used));
             let (records, links) = (records.unwrap_or(&mut []), links.unwrap_or(&mut []));
             Chains::new(records, links, found.degenerate > 0, is_border)?.signature()
         };
-        sensitive = signature(true)? != signature(false)?;
+        let one = signature(&found, records)?;
+        let other = descent::descend(grids, false, options.pairs, records)?;
+        sensitive = one != signature(&other, records)?;
         descent::descend(grids, true, options.pairs, records)?;
     }
     let used = 2 * found.segments;

@@ -113,6 +113,19 @@ impl Solver<'_, '_, '_> {
         curves.into_iter().any(|c| on_pieces(self.out.points_of(c), c.closed, point, reach))
     }
 
+    /// Whether a point near both surfaces lies in a region where they coincide: both have the same foot, where they are parallel.
+    fn is_in_region(&self, at: Places, point: [i64; 3]) -> bool {
+        if self.out.finished().iter().all(|c| c.kind != CurveKind::OverlapRegion) {
+            return false;
+        }
+        let feet = both!(|s| self.pair.foot(s, at[s], point));
+        let [Some((u, a)), Some((v, b))] = feet else { return false };
+        let cosine = a.normal().unit().dot(b.normal().unit()).abs();
+        self.pair.inside([u, v], 0)
+            && difference(a.point, b.point).norm() <= self.pair.touching()
+            && cosine > Real::ONE - Real::power(-10)
+    }
+
     /// Whether a point within a region lies on both surfaces, which are parallel there.
     fn is_coincident(&self, point: [i64; 3], near: usize) -> bool {
         let Some(border) = self.out.points.get(near) else { return false };
@@ -427,6 +440,9 @@ impl Solver<'_, '_, '_> {
     /// Makes sure that a crossing's curve is known; false if that cannot be told.
     fn cross(&mut self, grids: [&Grid<'_>; 2], crossing: Crossing) -> Result<bool, IntersectError> {
         let (at, point) = begin(grids, crossing);
+        if self.is_in_region(at, point) {
+            return Ok(true);
+        }
         let Some(spot) = self.pair.nearest(at).filter(|s| s.sine > SINGULAR) else {
             return Ok(self.is_explained(point));
         };
