@@ -88,7 +88,7 @@ pub(super) fn pass(
         let (own, over) = (cell[side & 1], cell[1 - (side & 1)]);
         for [from, to] in own.borders(pair.sheets[side & 1].triangle).into_iter().flatten() {
             let line = Line { side, edge: None, from, to };
-            let found = roots::find(pair, line, over, PAIRS, &mut parts, |spot, _| visit(spot))?;
+            let found = roots::find(pair, line, over, PAIRS, &mut parts, &mut |spot, _| visit(spot))?;
             undecided = undecided.saturating_add(found.undecided);
             // A border along which the surfaces meet is a curve itself.
             for part in found.parts.into_iter().flatten() {

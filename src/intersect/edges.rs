@@ -195,7 +195,7 @@ fn collect(
         return Ok(0);
     }
     let line = Line::edge(sheet, side, edge);
-    let roots = roots::find(pair, line, Region::ROOT, budget, halves, |spot, _| out.set_aside(spot))?;
+    let roots = roots::find(pair, line, Region::ROOT, budget, halves, &mut |spot, _| out.set_aside(spot))?;
     let mut undecided = roots.undecided.saturating_add(roots.touching);
     for part in roots.parts.into_iter().flatten() {
         let inner = [2, 1].map(|k| part.spot(pair, &line, part.range[0] + (part.range[1] - part.range[0]) / 4 * k));

@@ -290,7 +290,7 @@ fn meet<'b>(curve: SpaceCurve<'_>, net: SurfaceNet<'_>, out: &'b mut [Hit]) -> R
     };
     // The curve is the edge v = 0 of its net of degrees (n, 0).
     let edge = Line::edge(line, 0, 2);
-    let found = roots::find(&pair, edge, Region::ROOT, PAIRS, &mut [Part::BLANK; 2], |spot, touching| {
+    let found = roots::find(&pair, edge, Region::ROOT, PAIRS, &mut [Part::BLANK; 2], &mut |spot, touching| {
         enter(Hit::new(&pair, spot, if touching { HitKind::Touching } else { HitKind::Crossing }))
     })?;
     let mut undecided = found.undecided.saturating_add(found.touching);

@@ -78,7 +78,7 @@ impl<'a> Sheet<'a> {
 
     /// The control points of the curve of a tensor-product patch on which its first parameter is `t`.
     fn held_first(&self, t: i64) -> (Row, usize) {
-        let (m, h) = self.degrees;
+        let (m, h) = (self.degrees.0.min(MAX_DEGREE), self.degrees.1.min(MAX_DEGREE));
         let mut out = [[0; 4]; MAX_DEGREE + 1];
         for (j, out) in out.iter_mut().enumerate().take(h + 1) {
             let mut column = [[0; 4]; MAX_DEGREE + 1];
@@ -92,7 +92,7 @@ impl<'a> Sheet<'a> {
 
     /// The same for its second parameter.
     fn held_second(&self, t: i64) -> (Row, usize) {
-        let (m, h) = self.degrees;
+        let (m, h) = (self.degrees.0.min(MAX_DEGREE), self.degrees.1.min(MAX_DEGREE));
         let mut out = [[0; 4]; MAX_DEGREE + 1];
         for (out, points) in out.iter_mut().zip(self.net.chunks(h + 1)).take(m + 1) {
             let mut row = [[0; 4]; MAX_DEGREE + 1];

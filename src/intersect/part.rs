@@ -437,7 +437,8 @@ impl Part {
 
     /// The cone of normals.
     fn normals(&self) -> Cone {
-        let (points, radius) = self.centred();
+        let mut points = [[0; 3]; ROOM];
+        let radius = self.centre(&mut points);
         let Some(along_u) = self.directions(&points, radius, 0) else { return Cone::UNKNOWN };
         let Some(along_v) = self.directions(&points, radius, 1) else { return Cone::UNKNOWN };
         let across = along_u.axis.cross(along_v.axis);
@@ -455,22 +456,22 @@ impl Part {
 
     /// The directions of a line's tangents.
     pub(super) fn tangents(&self) -> Option<Directions> {
-        let (points, radius) = self.centred();
+        let mut points = [[0; 3]; ROOM];
+        let radius = self.centre(&mut points);
         self.directions(&points, radius, 0)
     }
 
-    /// Weighted control points about the middle with at most 29 bits, and how far any point of the part is from it.
-    fn centred(&self) -> ([[i64; 3]; ROOM], i64) {
+    /// Writes weighted control points about the middle with at most 29 bits; how far any point of the part is from it.
+    fn centre(&self, points: &mut [[i64; 3]; ROOM]) -> i64 {
         let middle = three!(|k| (self.low[k] >> 1) + (self.high[k] >> 1));
         let size = self.size().max(1);
         let shift = (64 - size.leading_zeros() as i32 - 28).max(0);
-        let mut points = [[0_i64; 3]; ROOM];
         for ((out, p), w) in points.iter_mut().zip(self.points()).zip(&self.weights) {
             for k in 0..3 {
                 out[k] = (((p[k] - middle[k]) >> shift) * i64::from(*w)) >> 24;
             }
         }
-        (points, (size >> shift) + 1)
+        (size >> shift) + 1
     }
 
     /// The directions of the derivatives along u or v.

@@ -1,11 +1,11 @@
 //! Where a curve meets a surface: all points, with a proof that there are no others.
 //!
-//! The curve is an edge of one patch of a pair, or a line in its domain. Parts of it and parts of the other patch are halved, the longer one first,
-//! until a plane lies between their hulls, or they meet in one point at most: if no tangent of the curve is orthogonal to a
-//! normal of the surface, both within rigorous cones, then (t, u, v) ↦ S(u, v) − C(t) has the mean derivatives
-//! (Su, Sv, −C') with a determinant that is nowhere 0, and takes no value twice. There Newton's method finds the point; if it
-//! lies in the pair of parts, or so little beside it that the cones hold there too, the pair is done. What neither test decides
-//! is where the curve touches the surface or lies on it: such pairs are looked at by themselves.
+//! The curve is an edge of one patch of a pair, or a line in its domain. Parts of it and parts of the other patch are halved,
+//! the longer one first, until a plane lies between their hulls, or they meet in one point at most: if no tangent of the
+//! curve is orthogonal to a normal of the surface, both within rigorous cones, then (t, u, v) ↦ S(u, v) − C(t) has the mean
+//! derivatives (Su, Sv, −C') with a determinant that is nowhere 0, and takes no value twice. There Newton's method finds the
+//! point; if it lies in the pair of parts, or so little beside it that the cones hold there too, the pair is done. What
+//! neither test decides is where the curve touches the surface or lies on it: such pairs are looked at by themselves.
 
 use super::IntersectError;
 use super::line::Line;
@@ -161,10 +161,13 @@ enum Verdict {
     Open,
 }
 
-struct Search<'s, 'a, F> {
+/// What takes the points: each with whether the curve touches the surface there.
+type Visit<'v> = dyn FnMut(&Spot, bool) -> Result<(), IntersectError> + 'v;
+
+struct Search<'s, 'a, 'v> {
     pair: &'s Pair<'a>,
     line: Line,
-    visit: F,
+    visit: &'s mut Visit<'v>,
     failure: Result<(), IntersectError>,
     touches: [Option<(i64, Place)>; TOUCHES],
     /// Pairs too small to be halved.
@@ -172,7 +175,7 @@ struct Search<'s, 'a, F> {
     roots: Roots,
 }
 
-impl<F: FnMut(&Spot, bool) -> Result<(), IntersectError>> Search<'_, '_, F> {
+impl Search<'_, '_, '_> {
     fn other(&self) -> usize {
         1 - (self.line.side & 1)
     }
@@ -395,9 +398,9 @@ impl<F: FnMut(&Spot, bool) -> Result<(), IntersectError>> Search<'_, '_, F> {
     }
 }
 
-/// Finds all points where a line on one patch meets the other, or a part of the other, and calls `visit` with each, and with whether the curve
-/// touches the surface there. A point in the border of two parts comes twice. Looks at `budget` pairs of parts at most, in
-/// `parts`: the second is empty or a part of that patch.
+/// Finds all points where a line on one patch meets the other, or a part of the other, and calls `visit` with each, and
+/// with whether the curve touches the surface there. A point in the border of two parts comes twice. Looks at `budget` pairs
+/// of parts at most, in `parts`: the second is empty or a part of that patch.
 #[inline(never)]
 pub(super) fn find(
     pair: &Pair<'_>,
@@ -405,7 +408,7 @@ pub(super) fn find(
     over: Region,
     budget: u32,
     parts: &mut [Part; 2],
-    visit: impl FnMut(&Spot, bool) -> Result<(), IntersectError>,
+    visit: &mut Visit<'_>,
 ) -> Result<Roots, IntersectError> {
     let roots = Roots { parts: [None; PARTS], undecided: 0, touching: 0, visited: 0 };
     let mut search =
