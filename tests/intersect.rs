@@ -10,11 +10,11 @@ mod meeting;
 
 use embedded_surfaces::geometry::{Axis, Point3};
 use embedded_surfaces::intersect::{
-    Branch, Buffer, Buffers, Curve, CurvePoint, End, IntersectError, Options, Room, Side, curve_points, intersect,
-    project, section,
+    Branch, Buffer, Buffers, Curve, CurvePoint, End, IntersectError, Options, Plane, Room, Side, intersect, project,
+    section,
 };
 use embedded_surfaces::num::I16F16;
-use embedded_surfaces::patch::{BicubicPatch, BilinearPatch, Curve as Line, Surface};
+use embedded_surfaces::patch::{BicubicPatch, BilinearPatch, Surface};
 use embedded_surfaces::reference;
 use meeting::{Meeting, Patch, cases, distance, dot, expected, minus, position, tangent};
 use proptest::prelude::*;
@@ -272,7 +272,7 @@ fn contours_are_closed_round_a_summit_and_level() {
     for (height, count) in [(5, 1), (15, 1), (22, 1), (23, 0)] {
         let at = I16F16::from_num(height);
         let found = Meeting::with(&hill, &hill, &OPTIONS, |buffers, [net, _], options| {
-            section(net, Axis::Z, at, options, buffers)
+            section(net, Plane::across(Axis::Z, at), options, buffers)
         });
         let found = found.unwrap();
         assert_eq!(found.kinds(), vec!["closed_curve"; count], "{height}");
@@ -283,35 +283,9 @@ fn contours_are_closed_round_a_summit_and_level() {
     }
     // The summit, 22.5, is a touching point.
     let summit = Meeting::with(&hill, &hill, &OPTIONS, |buffers, [net, _], options| {
-        section(net, Axis::Z, I16F16::from_num(45) / 2, options, buffers)
+        section(net, Plane::across(Axis::Z, I16F16::from_num(45) / 2), options, buffers)
     });
     assert_eq!(summit.unwrap().kinds(), ["tangent_point"]);
-}
-
-#[test]
-fn curves_meet_a_surface_where_they_should() {
-    let line = Line::<4>::from_ints([[10, 30, -20], [25, 30, 90], [40, 30, -70], [50, 30, 60]]).unwrap();
-    let (mut vertices, mut boxes) = ([[0; 3]; 1089], [[[0; 3]; 2]; 1365]);
-    let mut found = [CurvePoint::BLANK; 8];
-    let count = curve_points(line.net(), HILL.surface(), 5, &mut vertices, &mut boxes, &mut found).unwrap();
-    // The oracle counts changes of sign of the height over the hill, whose x and y are its parameters, times 60.
-    let height = |k: usize| {
-        let t = k as f64 / 10_000.0;
-        let [x, y, z] = reference::curve_point(line.net(), t);
-        z - reference::point(HILL.surface(), x / 60.0, y / 60.0)[2]
-    };
-    let signs = (0..10_000).filter(|k| (height(*k) > 0.0) != (height(k + 1) > 0.0)).count();
-    assert_eq!(count, signs);
-    assert!(count == 3, "{count}");
-    for p in &found[..count] {
-        let t = p.parameters[0][0].to_bits() as f64 / (1_u64 << 48) as f64;
-        let d = minus(reference::curve_point(line.net(), t), position(p));
-        assert!(dot(d, d).sqrt() < 1e-9);
-    }
-    assert!(matches!(
-        curve_points(line.net(), HILL.surface(), 5, &mut vertices, &mut boxes, &mut found[..2]),
-        Err(IntersectError::Buffer { needed: 3, given: 2, .. })
-    ));
 }
 
 proptest! {

@@ -5,10 +5,15 @@
 mod workspace;
 
 use arbitrary::{Result, Unstructured};
-use embedded_surfaces::geometry::{Axis, Point3};
-use embedded_surfaces::intersect::{IntersectError, Options, Room, intersect, project, section};
-use embedded_surfaces::num::I16F16;
-use embedded_surfaces::patch::{RationalTensorNet, RationalTriangleNet, SurfaceNet, TensorNet, TriangleNet};
+use embedded_surfaces::geometry::{Point3, Vector3};
+use embedded_surfaces::intersect::{
+    Held, Hit, HitKind, I16F48, IntersectError, IsoCurve, Options, Plane, Room, SpaceCurve, curve_points, intersect, project,
+    section,
+};
+use embedded_surfaces::num::{I16F16, I32F32};
+use embedded_surfaces::patch::{
+    CurveNet, RationalCurveNet, RationalTensorNet, RationalTriangleNet, SurfaceNet, TensorNet, TriangleNet,
+};
 use libfuzzer_sys::fuzz_target;
 use workspace::Workspace;
 
@@ -70,18 +75,50 @@ fn check(u: &mut Unstructured<'_>) -> Result<()> {
     let options = Options::DEFAULT.with_depth(u.int_in_range(3..=5)?).with_budgets(1 << 16, 1 << 8);
     let Ok(room) = Room::new(a, b, options.depth) else { panic!("the depth is legal") };
     let mut workspace = Workspace::new(&room, 1 << 11, 1 << 10, 32);
-    let at = I16F16::from_bits(u.arbitrary()?);
+    let mut normal = [0; 3];
+    for c in &mut normal {
+        *c = if u.arbitrary()? { i32::from(u.arbitrary::<i8>()?) << 16 } else { u.arbitrary()? };
+    }
+    let normal = Vector3::from_array(normal.map(I16F16::from_bits));
+    // Often through a control point.
+    let plane = if u.arbitrary()? {
+        Plane::through(one.points[u.choose_index(one.points.len())?], normal)
+    } else {
+        Plane::new(normal, I32F32::from_bits(u.arbitrary()?))
+    };
     for turn in 0..3 {
         let buffers = workspace.buffers();
         let result = match turn {
             0 => intersect(a, b, &options, buffers),
             1 => intersect(b, a, &options, buffers),
-            _ => section(a, Axis::Z, at, &options, buffers),
+            _ => match plane {
+                Ok(plane) => section(a, plane, &options, buffers),
+                Err(_) => continue,
+            },
         };
         assert!(!matches!(result, Err(IntersectError::Internal)), "a rule is broken");
     }
     let buffers = workspace.buffers();
     assert!(project(b, one.points[0], options.depth, buffers.vertices, buffers.boxes).is_ok());
+    lines(u, &one, b)
+}
+
+/// Curves made of a patch's points, and its iso-parametric curves, against another.
+fn lines(u: &mut Unstructured<'_>, one: &Patch, net: SurfaceNet<'_>) -> Result<()> {
+    let count = u.int_in_range(2..=9.min(one.points.len()))?;
+    let Ok(curve) = CurveNet::new(&one.points[..count]) else { return Ok(()) };
+    let held = *u.choose(&[Held::First, Held::Second, Held::Third])?;
+    let at = I16F48::from_bits(u.int_in_range(0..=1 << 48)?);
+    let weights = one.weights.as_ref().map(|w| RationalCurveNet::new(curve, &w[..count]));
+    let iso = one.net().map(|own| IsoCurve::new(own, held, at).ok());
+    let curves = [Some(SpaceCurve::from(curve)), weights.and_then(|w| w.ok()).map(Into::into), iso.flatten().map(Into::into)];
+    for curve in curves.into_iter().flatten() {
+        let mut room = [Hit::BLANK; 64];
+        let Ok(hits) = curve_points(curve, net, &mut room) else { continue };
+        assert!(hits.points().is_sorted_by_key(|hit| hit.t), "out of order");
+        let touches = hits.points().iter().filter(|hit| hit.kind == HitKind::Touching).count();
+        assert!(touches == 0 || !hits.is_certified(), "a touch is certain");
+    }
     Ok(())
 }
 

@@ -5,9 +5,10 @@
 //! (Sinha, Klassen, Wang 1985; Sederberg, Christiansen, Katz 1989). Others are halved, the longer one first. Where both are
 //! nearly flat, a search for a point with collinear normals tells what keeps them from being decided.
 
+use super::cells::Cells;
 use super::contact::{Contact, Form};
 use super::newton::{Pair, Places};
-use super::part::{Part, Region};
+use super::part::{Meeting, Part, Region};
 use super::sheet::in_rooms;
 use crate::num::Real;
 
@@ -15,7 +16,7 @@ use crate::num::Real;
 pub(super) const DEEPEST: u8 = 11;
 /// The same of a first pass, which looks for tangencies all over before the second goes deep anywhere.
 pub(super) const SHALLOW: u8 = 6;
-const STACK: usize = 3 * 2 * DEEPEST as usize + 2;
+pub(super) const STACK: usize = 3 * 2 * DEEPEST as usize + 2;
 /// Points with collinear normals that are kept.
 pub(super) const CONTACTS: usize = 24;
 
@@ -82,6 +83,38 @@ enum Verdict {
     Asks(Found),
 }
 
+/// Makes parts those over two regions.
+pub(super) fn load(pair: &Pair<'_>, parts: &mut [Part<'_>; 2], regions: [Region; 2]) {
+    for ((part, region), sheet) in parts.iter_mut().zip(regions).zip(&pair.sheets) {
+        if part.region != Some(region) {
+            part.load(sheet, region);
+        }
+    }
+}
+
+/// Puts the quarters of the larger part, each with the other, on a stack; false where both are as small as they get.
+pub(super) fn halve(
+    pair: &Pair<'_>,
+    parts: &[Part<'_>; 2],
+    regions: [Region; 2],
+    deepest: u8,
+    (stack, height): (&mut [[Region; 2]; STACK], &mut usize),
+) -> bool {
+    let ends = regions.map(|r| r.level >= deepest);
+    if ends[0] && ends[1] {
+        return false;
+    }
+    let split = usize::from(ends[0] || (!ends[1] && parts[1].size() > parts[0].size()));
+    for quarter in regions[split & 1].quarters(pair.sheets[split & 1].triangle) {
+        if let Some(place) = stack.get_mut(*height) {
+            *place = regions;
+            place[split & 1] = quarter;
+            *height += 1;
+        }
+    }
+    true
+}
+
 /// The test between two questions: the pairs that are left. 0.9 KB; parts
 /// take up to 5.2 KB more, so they do not stay while a curve is followed.
 #[derive(Debug)]
@@ -106,27 +139,28 @@ impl<'s, 'a> Search<'s, 'a> {
     /// `is_near` tells whether such a curve passes within a distance of a point.
     pub(super) fn run(
         &mut self,
-        report: &mut Report,
+        (report, cells): (&mut Report, &mut Cells<'_>),
         budget: u32,
         answer: bool,
         is_near: impl Fn([i64; 3], Real) -> bool,
     ) -> Option<Places> {
-        let points = self.pair.sheets.iter().fold(0, |most, sheet| most.max(sheet.source.points().len()));
-        in_rooms(points, |rooms| self.run_with(rooms.map(Part::new), report, budget, answer, is_near))
+        in_rooms(self.pair.most_points(), |rooms| {
+            self.run_with(rooms.map(Part::new), (report, cells), budget, answer, is_near)
+        })
     }
 
     #[inline(never)]
     fn run_with(
         &mut self,
         mut parts: [Part<'_>; 2],
-        report: &mut Report,
+        (report, cells): (&mut Report, &mut Cells<'_>),
         budget: u32,
         answer: bool,
         is_near: impl Fn([i64; 3], Real) -> bool,
     ) -> Option<Places> {
         loop {
             let (regions, verdict) = if let Some((regions, found)) = self.asked.take() {
-                self.load(&mut parts, regions);
+                load(self.pair, &mut parts, regions);
                 if !answer {
                     report.keep(found);
                 }
@@ -140,14 +174,17 @@ impl<'s, 'a> Search<'s, 'a> {
                     return None;
                 }
                 report.visited += 1;
-                self.load(&mut parts, regions);
+                load(self.pair, &mut parts, regions);
                 let [a, b] = &mut parts;
-                (regions, self.judge(report, a, b, regions, &is_near))
+                (regions, self.judge((report, cells), [a, b], regions, &is_near))
             };
             match verdict {
                 Verdict::Decided => {}
                 Verdict::Explained => report.undecided = report.undecided.saturating_add(1),
-                Verdict::Open => self.halve(report, &parts, regions),
+                Verdict::Open => {
+                    let halved = halve(self.pair, &parts, regions, self.deepest, (&mut self.stack, &mut self.height));
+                    report.undecided = report.undecided.saturating_add(u32::from(!halved));
+                }
                 Verdict::Asks(found) => {
                     self.asked = Some((regions, found));
                     return Some(found.at);
@@ -156,55 +193,22 @@ impl<'s, 'a> Search<'s, 'a> {
         }
     }
 
-    fn load(&self, parts: &mut [Part<'_>; 2], regions: [Region; 2]) {
-        for ((part, region), sheet) in parts.iter_mut().zip(regions).zip(&self.pair.sheets) {
-            if part.region != Some(region) {
-                part.load(sheet, region);
-            }
-        }
-    }
-
-    /// Puts the quarters of the larger part, each with the other part, on the stack.
-    fn halve(&mut self, report: &mut Report, parts: &[Part<'_>; 2], regions: [Region; 2]) {
-        let ends = regions.map(|r| r.level >= self.deepest);
-        if ends[0] && ends[1] {
-            report.undecided = report.undecided.saturating_add(1);
-            return;
-        }
-        let split = usize::from(ends[0] || (!ends[1] && parts[1].size() > parts[0].size()));
-        for quarter in regions[split].quarters(self.pair.sheets[split].triangle) {
-            if let Some(place) = self.stack.get_mut(self.height) {
-                *place = regions;
-                place[split] = quarter;
-                self.height += 1;
-            }
-        }
-    }
-
     fn judge(
         &self,
-        report: &mut Report,
-        a: &mut Part<'_>,
-        b: &mut Part<'_>,
+        (report, cells): (&mut Report, &mut Cells<'_>),
+        [a, b]: [&mut Part<'_>; 2],
         regions: [Region; 2],
         is_near: &impl Fn([i64; 3], Real) -> bool,
     ) -> Verdict {
         let [over_a, over_b] = regions;
-        if !a.boxes_meet(b) {
-            return Verdict::Decided;
-        }
-        a.aim();
-        b.aim();
-        for axis in [a.cone.axis, b.cone.axis] {
-            if !axis.is_zero() && a.is_apart_along(b, axis) {
+        match a.meeting(b) {
+            Meeting::Apart => return Verdict::Decided,
+            Meeting::Through => {
+                cells.enter(regions);
                 return Verdict::Decided;
             }
-        }
-        if !(a.cone.is_narrow() && b.cone.is_narrow()) {
-            return Verdict::Open;
-        }
-        if a.cone.is_apart(&b.cone) {
-            return Verdict::Decided;
+            Meeting::Any if !(a.cone.is_narrow() && b.cone.is_narrow()) => return Verdict::Open,
+            Meeting::Any => {}
         }
         let level = over_a.level.min(over_b.level);
         if level >= 4 && Self::touching_in(report, regions) > 0 {

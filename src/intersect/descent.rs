@@ -1,6 +1,6 @@
 //! Dual descent: pairs of grid nodes whose boxes meet, down to pairs of triangles that cross.
 
-use super::grid::{Grid, GridBox, GridVertex, union};
+use super::grid::{Grid, GridBox, GridVertex};
 use super::key::{Cell, Crossing, KEY_BITS};
 use super::predicate::{Perturbation, height as height_over, is_degenerate, normal};
 use super::sheet::Place;
@@ -102,20 +102,27 @@ struct Facet {
     normal: [i128; 3],
 }
 
-fn facets(grid: &Grid<'_>, node: Node, found: &mut Found) -> [Option<Facet>; 2] {
-    [false, true].map(|upper| {
-        if upper && !grid.has_upper(node.i.into(), node.j.into()) {
-            return None;
-        }
-        let cell = Cell { i: node.i, j: node.j, upper };
-        let corners = cell.corners().map(|(i, j)| grid.vertex(i, j));
-        let normal = normal(corners);
-        if is_degenerate(&normal) {
-            found.degenerate = found.degenerate.saturating_add(1);
-            return None;
-        }
-        Some(Facet { cell, corners, normal })
-    })
+/// A triangle of a cell, unless the domain ends before it or it has no normal.
+#[inline(always)]
+fn facet(grid: &Grid<'_>, node: Node, upper: bool, found: &mut Found) -> Option<Facet> {
+    if upper && !grid.has_upper(node.i.into(), node.j.into()) {
+        return None;
+    }
+    let cell = Cell { i: node.i, j: node.j, upper };
+    let places = cell.corners();
+    let corners = three!(|k| grid.vertex(places[k].0, places[k].1));
+    let normal = normal(corners);
+    if is_degenerate(&normal) {
+        found.degenerate = found.degenerate.saturating_add(1);
+        return None;
+    }
+    Some(Facet { cell, corners, normal })
+}
+
+/// The signs of a triangle's corners over another's plane.
+#[inline(always)]
+fn signs(perturbation: &mut Perturbation, f: &Facet, g: &Facet, of_a: bool) -> [bool; 3] {
+    three!(|k| perturbation.side(&g.normal, g.corners[0], f.corners[k], of_a))
 }
 
 /// The pairs of triangles of two cells.
@@ -126,14 +133,11 @@ fn cells(
     found: &mut Found,
     records: &mut [u64],
 ) -> Result<(), IntersectError> {
-    let [of_a, of_b] = both!(|s| facets(grids[s], pair[s], found));
+    let [of_a, of_b] = both!(|s| both!(|k| facet(grids[s], pair[s], k == 1, found)));
     for a in of_a.iter().flatten() {
         for b in of_b.iter().flatten() {
             let mut crossings = [None; 2];
             let mut count = 0;
-            let signs = |p: &mut Perturbation, f: &Facet, g: &Facet, of_a| {
-                f.corners.map(|x| p.side(&g.normal, g.corners[0], x, of_a))
-            };
             let a_signs = signs(perturbation, a, b, true);
             if a_signs == [a_signs[0]; 3] {
                 continue;
@@ -185,46 +189,6 @@ pub(super) const fn key(record: u64) -> u64 {
 /// The number of a record: twice its segment, plus one for the second end.
 pub(super) const fn number(record: u64) -> usize {
     (record & ((1 << ID_BITS) - 1)) as usize
-}
-
-/// Calls `visit` for each triangle of a grid that a segment passes through: its share of the segment from the start, and the
-/// place on the grid's patch. The segment counts as A's edge.
-pub(super) fn pierce(
-    grid: &Grid<'_>,
-    edge: [GridVertex; 2],
-    mut visit: impl FnMut(Real, Place),
-) -> Result<(), IntersectError> {
-    let mut perturbation = Perturbation { positive: true, zeros: 0 };
-    let mut found = Found::default();
-    let own = union(&[edge[0]; 2], &[edge[1]; 2]);
-    let mut stack = [Node { level: 0, i: 0, j: 0 }; STACK];
-    let mut height = 1;
-    while height > 0 {
-        height -= 1;
-        let Some(node) = stack.get(height).copied() else { return Err(IntersectError::Internal) };
-        if !meet(&own, &grid.bounds(node.level.into(), node.i.into(), node.j.into())) {
-            continue;
-        }
-        if u32::from(node.level) < grid.depth {
-            for (di, dj) in [(1, 1), (1, 0), (0, 1), (0, 0)] {
-                let child = Node { level: node.level + 1, i: 2 * node.i + di, j: 2 * node.j + dj };
-                if grid.exists(child.level.into(), child.i.into(), child.j.into()) {
-                    *stack.get_mut(height).ok_or(IntersectError::Internal)? = child;
-                    height += 1;
-                }
-            }
-            continue;
-        }
-        for facet in facets(grid, node, &mut found).iter().flatten() {
-            let sides = edge.map(|x| perturbation.side(&facet.normal, facet.corners[0], x, true));
-            if sides[0] != sides[1] && perturbation.crosses(edge, facet.corners, true) {
-                let [a, b, c] = facet.corners;
-                let (share, weights) = meeting(edge, [a, b, c], &facet.normal);
-                visit(share, place_in(grid, facet.cell, weights));
-            }
-        }
-    }
-    Ok(())
 }
 
 /// Where a segment meets the plane of a triangle: its share of the segment, and the weights of the second and third corner,

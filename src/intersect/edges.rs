@@ -1,24 +1,23 @@
 //! Edges that lie on the other patch: shared edges, edges on a surface, borders of regions where the surfaces coincide.
 //!
 //! An edge is looked at before anything else: on it the surfaces meet in no point that a mesh could find reliably. Shared
-//! edges are found by exact comparison of control points; parts of edges on a surface by samples whose feet are at no
-//! distance, their ends by bisection.
+//! edges are found by exact comparison of control points; of all others the points on the other patch, and the parts on it, by
+//! halving, with proof (`roots`). Crossings are set aside until it is known which curves end there.
 
 use super::IntersectError;
 use super::curve::{Curve, CurveKind, CurvePoint};
-use super::grid::Grid;
 use super::hermite::Piece;
+use super::line::Line;
 use super::newton::{Pair, Places, Spot, difference};
+use super::part::{Part, Region};
+use super::roots;
+use super::sheet::in_rooms;
 use super::sheet::{ONE, Place, Sheet};
-use super::trace::{BORDER, Locus, Output, Tracer};
+use super::trace::{Locus, Output, Tracer};
 use crate::geometry::Point3;
 use crate::num::{Coord, I16F16, Real};
 use crate::patch::{MAX_DEGREE, triangle_index};
 
-/// Samples of an edge are this many less one.
-const SAMPLES: i64 = 8;
-/// A vertex of 2^this cells a side is where a foot is searched from.
-const COARSE: u32 = 3;
 /// Parts of edges on a surface that are kept at most: 7 or 8 edges, a few parts each.
 const MOST: usize = 12;
 /// The largest sine of an angle that counts as none along a curve.
@@ -47,13 +46,20 @@ impl OnSurface {
         let [a, b] = self.ends;
         Some([pair.place_on_edge(self.side, self.edge, a)?, pair.place_on_edge(self.side, self.edge, b)?])
     }
+
+    /// A part with its ends, and two spots between them.
+    fn new((side, edge): (usize, usize), ends: &[Spot; 2], between: &[Spot; 2], shared: bool) -> Self {
+        let tangential = ends.iter().chain(between).all(|s| s.sine <= PARALLEL);
+        let (at, points) = (both!(|k| ends[k].at), both!(|k| ends[k].point));
+        Self { side, edge, ends: at, points, tangential, shared, used: false }
+    }
 }
 
 impl Sheet<'_> {
-    /// Control point `k` of an edge, in the direction of its parameter.
-    fn edge_point(&self, edge: usize, k: usize) -> Option<EdgePoint> {
+    /// Where control point `k` of an edge stands, in the direction of its parameter.
+    pub(super) fn edge_index(&self, edge: usize, k: usize) -> Option<usize> {
         let (m, h) = self.degrees;
-        let at = match (self.triangle, edge) {
+        Some(match (self.triangle, edge) {
             (true, 0) => triangle_index(k, m.checked_sub(k)?),
             (true, 1) => triangle_index(0, m.checked_sub(k)?),
             (true, _) => triangle_index(m.checked_sub(k)?, 0),
@@ -61,12 +67,17 @@ impl Sheet<'_> {
             (false, 1) => m * (h + 1) + k,
             (false, 2) => k * (h + 1),
             (false, _) => k * (h + 1) + h,
-        };
+        })
+    }
+
+    /// Control point `k` of an edge with its weight.
+    fn edge_point(&self, edge: usize, k: usize) -> Option<EdgePoint> {
+        let at = self.edge_index(edge, k)?;
         let weight = self.source.weights().map_or(Some(1), |w| Some(w.get(at)?.to_bits()))?;
         Some((*self.source.points().get(at)?, weight))
     }
 
-    fn edge_degree(&self, edge: usize) -> usize {
+    pub(super) fn edge_degree(&self, edge: usize) -> usize {
         if self.triangle || edge >= 2 { self.degrees.0 } else { self.degrees.1 }
     }
 }
@@ -86,58 +97,6 @@ fn are_equal(a: &Sheet<'_>, edge_a: usize, b: &Sheet<'_>, edge_b: usize, reverse
     })
 }
 
-impl Pair<'_> {
-    /// Where the search for the foot of a point on a patch begins: the nearest vertex of a coarse grid, if one is as near
-    /// as it must be for a point on the patch.
-    #[inline(never)]
-    pub(super) fn coarse_foot(&self, side: usize, grid: &Grid<'_>, point: [i64; 3]) -> (Place, i64) {
-        let stride = grid.depth.saturating_sub(COARSE);
-        let n = 1_usize << (grid.depth - stride);
-        let target = point.map(|c| c >> 28);
-        let mut best = ([0; 2], i64::MAX);
-        for i in 0..=n {
-            for j in 0..=n {
-                if grid.triangle && i + j > n {
-                    continue;
-                }
-                let v = grid.vertex(i << stride, j << stride);
-                let far = v.iter().zip(target).fold(0_i64, |far, (c, t)| far.max((i64::from(*c) - t).abs()));
-                if far < best.1 {
-                    let shift = 48 - (grid.depth - stride);
-                    best = ([(i as i64) << shift, (j as i64) << shift], far);
-                }
-            }
-        }
-        let _ = side;
-        best
-    }
-
-    /// The spot of an edge's parameter if it lies on the other patch, up to `slack` of its domain.
-    #[inline(never)]
-    fn on_surface(&self, side: usize, edge: usize, parameter: i64, near: Place, slack: i64) -> Option<Spot> {
-        let spot = self.edge_spot(side, edge, parameter, near)?;
-        let on =
-            spot.residual <= self.touching() && self.sheets[(1 - side) & 1].contains(spot.at[(1 - side) & 1], slack);
-        on.then_some(spot)
-    }
-}
-
-/// The largest side of a cell of the coarse grid, in units of 2^-16: no point of the patch is farther from a vertex.
-fn coarse_size(grid: &Grid<'_>) -> i64 {
-    let level = COARSE.min(grid.depth);
-    let mut size = 0;
-    for i in 0..1_usize << level {
-        for j in 0..1_usize << level {
-            if grid.exists(level, i, j) {
-                let b = grid.bounds(level, i, j);
-                size = (0..3).fold(size, |s: i64, k| s.max(i64::from(b[1][k]) - i64::from(b[0][k])));
-            }
-        }
-    }
-    // The surface may bulge past the vertices.
-    2 * size + 1
-}
-
 /// Parts of edges that lie on the other patch.
 struct Parts {
     list: [Option<OnSurface>; MOST],
@@ -149,7 +108,19 @@ impl Parts {
         *self.list.get(k)?
     }
 
-    fn push(&mut self, part: OnSurface) {
+    /// Adds a part unless it is one of the other patch's; `centre` is the spot in its middle.
+    fn enter(&mut self, pair: &Pair<'_>, part: OnSurface, centre: &Spot) {
+        let [low, high] = part.points;
+        let near = |a: [i64; 3], b: [i64; 3]| difference(a, b).norm() <= pair.extent.shl(-26);
+        let known = self.list.iter().flatten().any(|p| {
+            let [a, b] = p.points;
+            let same = (near(a, low) && near(b, high)) || (near(a, high) && near(b, low));
+            same && p.side != part.side
+                && pair.sheets[p.side & 1].edge_at(centre.at[p.side & 1], 1 << 20) == Some(p.edge as u8)
+        });
+        if known {
+            return;
+        }
         if let Some(place) = self.list.get_mut(self.count) {
             *place = Some(part);
             self.count += 1;
@@ -170,18 +141,14 @@ pub(super) struct Edges {
 #[inline(never)]
 pub(super) fn find(
     pair: &Pair<'_>,
-    grids: [&Grid<'_>; 2],
+    budget: u32,
     tolerance: Real,
     out: &mut Output<'_>,
 ) -> Result<Edges, IntersectError> {
     let mut parts = Parts { list: [None; MOST], count: 0 };
-    let sizes = [coarse_size(grids[0]), coarse_size(grids[1])];
-    for side in 0..2 {
-        for edge in 0..pair.sheets[side & 1].edge_count() {
-            collect(pair, grids, sizes, (side, edge), &mut parts);
-        }
-    }
-    let mut found = Edges { overlap: false, undecided: u32::from(parts.count == MOST) };
+    let undecided =
+        in_rooms(pair.most_points(), |rooms| collect_all(pair, budget, rooms.map(Part::new), &mut parts, out))?;
+    let mut found = Edges { overlap: false, undecided: undecided + u32::from(parts.count == MOST) };
     found.overlap = regions(pair, tolerance, &mut parts, out)?;
     for part in parts.list.iter().flatten().filter(|part| !part.used) {
         let first = out.used;
@@ -197,103 +164,71 @@ pub(super) fn find(
     Ok(found)
 }
 
-/// Adds the parts of one edge.
+/// Adds the parts of all edges; what stays undecided.
 #[inline(never)]
-fn collect(pair: &Pair<'_>, grids: [&Grid<'_>; 2], sizes: [i64; 2], (side, edge): (usize, usize), parts: &mut Parts) {
+fn collect_all(
+    pair: &Pair<'_>,
+    budget: u32,
+    mut halves: [Part<'_>; 2],
+    parts: &mut Parts,
+    out: &mut Output<'_>,
+) -> Result<u32, IntersectError> {
+    let mut undecided = 0_u32;
+    for side in 0..2 {
+        halves[1].region = None;
+        for edge in 0..pair.sheets[side & 1].edge_count() {
+            undecided = undecided.saturating_add(collect(pair, (side, edge), budget, &mut halves, parts, out)?);
+        }
+    }
+    Ok(undecided)
+}
+
+/// Adds the parts of one edge, and sets its other points on the surface aside; what stays undecided.
+#[inline(never)]
+fn collect(
+    pair: &Pair<'_>,
+    (side, edge): (usize, usize),
+    budget: u32,
+    halves: &mut [Part<'_>; 2],
+    parts: &mut Parts,
+    out: &mut Output<'_>,
+) -> Result<u32, IntersectError> {
     let other = 1 - side;
     let sheet = &pair.sheets[side & 1];
-    let shared_with = (0..pair.sheets[other & 1].edge_count()).find_map(|e| {
-        let reversed = |r: &bool| are_equal(sheet, edge, &pair.sheets[other & 1], e, *r);
-        [false, true].into_iter().find(reversed).map(|r| (e, r))
-    });
     // A degenerate edge is a point.
     let ends = [0, ONE].map(|t| sheet.eval(sheet.edge_place(edge, t), 0).map(|j| j.point));
     let centre = sheet.eval(sheet.edge_place(edge, ONE / 2), 0).map(|j| j.point);
     if ends[0] == ends[1] && ends[0] == centre {
-        return;
+        return Ok(0);
     }
-    let sample = |t: i64| -> Option<Spot> {
-        if let Some((e, reversed)) = shared_with {
+    let shared_with = (0..pair.sheets[other & 1].edge_count()).find_map(|e| {
+        let reversed = |r: &bool| are_equal(sheet, edge, &pair.sheets[other & 1], e, *r);
+        [false, true].into_iter().find(reversed).map(|r| (e, r))
+    });
+    if let Some((e, reversed)) = shared_with {
+        let spot = |t: i64| {
             let place = pair.sheets[other & 1].edge_place(e, if reversed { ONE - t } else { t });
-            return pair.shared_spot(side, edge, t, place);
+            pair.shared_spot(side, edge, t, place)
+        };
+        let spots = [0, ONE / 2, ONE, ONE / 4].map(spot);
+        if let [Some(low), Some(centre), Some(high), Some(quarter)] = spots {
+            parts.enter(pair, OnSurface::new((side, edge), &[low, high], &[centre, quarter], true), &centre);
         }
-        let point = sheet.eval(sheet.edge_place(edge, t), 0)?.point;
-        let (near, far) = pair.coarse_foot(other, grids[other & 1], point);
-        if far > sizes[other & 1] { None } else { pair.on_surface(side, edge, t, near, BORDER) }
-    };
-    let mut samples = [None; SAMPLES as usize + 1];
-    for (k, place) in (0..).zip(samples.iter_mut()) {
-        *place = sample(ONE / SAMPLES * k);
+        return Ok(0);
     }
-    let mut k = 0;
-    while k <= SAMPLES as usize {
-        let Some(Some(mut low)) = samples.get(k).copied() else {
-            k += 1;
-            continue;
-        };
-        let start = k;
-        let mut high = low;
-        while let Some(Some(next)) = samples.get(k + 1).copied() {
-            high = next;
-            k += 1;
-        }
-        let bounds = [start, k].map(|k| ONE / SAMPLES * k as i64);
-        if start > 0 {
-            low = last_on(pair, (side, edge), low, bounds[0], bounds[0] - ONE / SAMPLES);
-        }
-        if k < SAMPLES as usize {
-            high = last_on(pair, (side, edge), high, bounds[1], bounds[1] + ONE / SAMPLES);
-        }
-        k += 1;
-        let range = [low, high].map(|s| sheet.edge_parameter(edge, s.at[side & 1]));
-        // An edge that passes through the surface, or touches it, meets it in a point, not in a part: there, the distance
-        // grows from nothing to the tolerance, quickly.
-        let long = range[1] - range[0];
-        let firm = |t: i64| {
-            let near = super::trace::middle_place(low.at[other & 1], high.at[other & 1]);
-            let spot = pair.on_surface(side, edge, t, near, BORDER);
-            spot.is_some_and(|s| s.residual <= pair.touching().shl(-4))
-        };
-        if long < ONE && (long <= ONE >> 20 || !firm(range[0] + long / 8) || !firm(range[1] - long / 8)) {
-            continue;
-        }
-        let middle = (range[0] + range[1]) / 2;
-        let near = super::trace::middle_place(low.at[other & 1], high.at[other & 1]);
-        let Some(centre) = pair.on_surface(side, edge, middle, near, BORDER).or_else(|| sample(middle)) else {
-            continue;
-        };
-        let quarter = sample(range[0] + (range[1] - range[0]) / 4);
-        let tangential = [Some(low), Some(centre), quarter, Some(high)].iter().flatten().all(|s| s.sine <= PARALLEL);
-        let shared = shared_with.is_some();
-        let known = parts.list.iter().flatten().any(|p| {
-            let ends = |a: [i64; 3], b: &Spot| difference(a, b.point).norm() <= pair.extent.shl(-26);
-            let [a, b] = p.points;
-            let same = (ends(a, &low) && ends(b, &high)) || (ends(a, &high) && ends(b, &low));
-            same && p.side != side
-                && pair.sheets[p.side & 1].edge_at(centre.at[p.side & 1], 1 << 20) == Some(p.edge as u8)
-        });
-        if !known {
-            let (ends, points) = ([low.at, high.at], [low.point, high.point]);
-            parts.push(OnSurface { side, edge, ends, points, tangential, shared, used: false });
+    let line = Line::edge(sheet, side, edge);
+    let roots = roots::find(pair, line, Region::ROOT, budget, halves, &mut |spot, _| out.set_aside(spot))?;
+    let mut undecided = roots.undecided.saturating_add(roots.touching);
+    for part in roots.parts.into_iter().flatten() {
+        let inner = [2, 1].map(|k| part.spot(pair, &line, part.range[0] + (part.range[1] - part.range[0]) / 4 * k));
+        match (part.ends(pair, &line), inner) {
+            (Some(ends), [Some(centre), Some(quarter)]) => {
+                parts.enter(pair, OnSurface::new((side, edge), &ends, &[centre, quarter], false), &centre);
+            }
+            _ => undecided = undecided.saturating_add(1),
         }
     }
-}
-
-/// The last spot on the surface between a parameter on it and one that is not.
-#[inline(never)]
-fn last_on(pair: &Pair<'_>, (side, edge): (usize, usize), on: Spot, mut low: i64, mut high: i64) -> Spot {
-    let mut last = on;
-    for _ in 0..48 {
-        let middle = (low + high) >> 1;
-        match pair.on_surface(side, edge, middle, last.at[(1 - side) & 1], 4) {
-            Some(spot) => (low, last) = (middle, spot),
-            None => high = middle,
-        }
-        if (high - low).abs() <= 1 {
-            break;
-        }
-    }
-    last
+    Ok(undecided)
 }
 
 impl Pair<'_> {

@@ -59,10 +59,28 @@ pub enum IntersectError {
         /// Which patch.
         side: Side,
     },
-    /// A plane outside the range of coordinates, ±32767 units.
+    /// A curve that is a point.
+    DegenerateCurve,
+    /// A parameter outside 0 ..= 1, at which an iso-parametric curve of a triangle is a point, or that a tensor-product patch
+    /// does not have.
+    Parameter {
+        /// Its value in units of 2^-48.
+        bits: i64,
+    },
+    /// A plane whose part over the surface's box leaves the range of coordinates, ±32767 units.
     Plane {
-        /// Its coordinate in whole units, rounded down.
-        units: i32,
+        /// A coordinate that it would have in whole units, rounded down.
+        units: i64,
+    },
+    /// The normal of a plane has three zeros.
+    Normal {
+        /// The plane's offset in units of 2^-32.
+        offset: i64,
+    },
+    /// The offset n·x of a plane outside ±2^31.
+    Offset {
+        /// It in whole units, rounded down.
+        units: i64,
     },
     /// A combinatorial rule of the method was broken: a defect of this crate, never of the input.
     Internal,
@@ -118,7 +136,11 @@ impl core::fmt::Display for IntersectError {
                 let name = if *side == Side::A { "first" } else { "second" };
                 write!(f, "the {name} patch has no normal anywhere")
             }
-            Self::Plane { units } => write!(f, "the plane near {units} is outside -32767 ..= 32767"),
+            Self::DegenerateCurve => write!(f, "the curve is a point"),
+            Self::Parameter { bits } => write!(f, "no curve of the patch has its parameter at {bits} / 2^48"),
+            Self::Plane { units } => write!(f, "the plane reaches {units} over the surface, outside -32767 ..= 32767"),
+            Self::Normal { offset } => write!(f, "the plane 0 = {offset} / 2^32 has no normal"),
+            Self::Offset { units } => write!(f, "the plane's offset {units} is outside -2^31 .. 2^31"),
             Self::Internal => write!(f, "a rule of the method was broken"),
         }
     }

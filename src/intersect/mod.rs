@@ -7,9 +7,10 @@
 //! * Every point lies within [`Curve::residual`] of both surfaces, less than 10^-9 unit for patches up to a few thousand
 //!   units across; every piece is within [`Options::tolerance`] of the curve, or counted in [`Curve::unrefined`].
 //! * What cannot be decided is counted in [`Intersection::undecided`], never left out in silence.
-//!   [`Intersection::is_certified`] says that the loop-free test left nothing: no closed curve and no tangency lies in any pair
-//!   of parts. A tangency is never certified, only found: whether surfaces touch or miss each other by less than the
-//!   arithmetic resolves is not decidable.
+//!   [`Intersection::is_certified`] says that nothing was, and then no curve is missing: no closed curve and no tangency lies in
+//!   any pair of parts, all points are known where an edge meets the other patch and where a curve passes between parts, and a
+//!   curve that is returned comes within eight tolerances of each. A tangency is never certified, only found: whether
+//!   surfaces touch or miss each other by less than the arithmetic resolves is not decidable.
 //! * The result does not depend on the order of the arguments; equal input gives equal bits on every target.
 //!
 //! # How
@@ -23,10 +24,12 @@
 //! | `grid` | net → exact vertices at (i/2^m, j/2^m), rounded once; boxes over them |
 //! | `descent`, `predicate`, `key`, `chain` | two grids → crossings, segments, chains |
 //! | `sheet`, `newton` | net → points and derivatives; places near the curve → spots on it |
-//! | `edges` | edges on the other surface: shared edges, borders of regions |
+//! | `line`, `roots` | a curve and a surface → all points where they meet, parts on the surface |
+//! | `edges` | edges on the other surface: shared edges, borders of regions, crossings |
 //! | `part`, `certify`, `contact` | the loop-free test; points with collinear normals: touching points, branches, ridges |
 //! | `trace`, `hermite`, `solve` | seeds → curves |
-//! | `plane`, `probe` | [`section`]; [`curve_points`], [`project`] |
+//! | `cells` | pairs of parts → where curves pass from one to the next |
+//! | `plane`, `probe`, `hits` | [`section`]; [`project`]; [`curve_points`] |
 //!
 //! # What it needs
 //! Everything is lent by the caller ([`Buffers`]). Bytes for two tensor-product patches; triangles take half the vertices:
@@ -38,14 +41,17 @@
 //! | 6 | 101 400 | 262 128 | 16 368 |
 //! | 7 | 399 384 | 1 048 560 | 65 520 |
 //!
-//! A segment takes 24 bytes (two records, two links), a point 88, a curve 88. A transversal curve from border to border takes
+//! A segment takes 24 bytes (two records, two links), a point 88, a curve 88. Until curves are followed, each crossing of an
+//! edge takes a point too. Records to spare keep the pairs of parts of the loop-free test, one each; with fewer than those
+//! the test runs again. A transversal curve from border to border takes
 //! some 4·2^depth segments and, at the default tolerance, about a hundred points. Boxes below the levels that there is
 //! room for are made of vertices again and again: to depth − 2 the descent takes about twice the time. The stack is about 30 KB.
 //!
 //! # What it does not do
 //! More than two curves through one point (higher contacts), and cusps, are counted as undecided; curves end near them.
-//! A part of an edge on the other surface shorter than an eighth of the edge may be missed; so may a curve that cuts a
-//! border twice within a cell. In a pair with a region where the surfaces coincide the loop-free test is left out.
+//! An edge that touches the other surface is undecided, and so is a part of an edge on it shorter than 2^-10 of the edge.
+//! Two curves closer to each other than eight tolerances may count as one. In a pair with a region where the surfaces coincide
+//! the loop-free test is left out.
 
 /// `[body with k = 0, body with k = 1]`: indices are constants, whatever a compiler for size inlines.
 macro_rules! both {
@@ -83,6 +89,7 @@ macro_rules! three {
     };
 }
 
+mod cells;
 mod certify;
 mod chain;
 mod contact;
@@ -92,12 +99,15 @@ mod edges;
 mod error;
 mod grid;
 mod hermite;
+mod hits;
 mod key;
+mod line;
 mod newton;
 mod part;
 mod plane;
 mod predicate;
 mod probe;
+mod roots;
 mod sheet;
 mod solve;
 mod trace;
@@ -107,20 +117,28 @@ pub use curve::{Branch, Curve, CurveKind, CurvePoint, End, Side};
 pub use error::{Buffer, IntersectError};
 pub use fixed::types::{I2F30, I16F48, I20F44};
 pub use grid::{GridBox, GridVertex};
-pub use plane::section;
-pub use probe::{Projection, curve_points, project};
+pub use hits::{Held, Hit, HitKind, Hits, IsoCurve, SpaceCurve, curve_points};
+pub use plane::{Plane, section};
+pub use probe::{Projection, project};
 
 use crate::num::{Coord, Real};
 use crate::patch::SurfaceNet;
+use cells::Cells;
 use certify::Report;
 use chain::{Chains, Signature};
 use descent::Found;
 use grid::{Grid, box_count, vertex_count};
 use key::Crossing;
 use newton::Pair;
-use sheet::in_rooms;
+use sheet::{Sheet, in_rooms};
 use solve::Solver;
 use trace::Output;
+
+/// Pairs of parts of the loop-free test that are kept at a time where records leave no room for more.
+const FEW: usize = 32;
+
+/// Pairs of parts that are looked at to find all points of one edge on the other patch.
+const EDGE_PAIRS: u32 = 1 << 12;
 
 /// The least depth of a grid.
 pub const MIN_DEPTH: u32 = 3;
@@ -227,6 +245,24 @@ impl Room {
         let vertices = [a, b].map(|net| vertex_count(net.is_triangle(), depth));
         Ok(Self { vertices: vertices[0] + vertices[1], boxes: 2 * box_count(depth) })
     }
+
+    /// The room for a [`section`] of a net at a depth.
+    ///
+    /// # Errors
+    /// [`IntersectError::Depth`].
+    ///
+    /// # Examples
+    /// ```
+    /// use embedded_surfaces::{intersect::Room, patch::{BilinearPatch, Surface}};
+    /// let floor = BilinearPatch::from_ints([[[0, 0, 0], [0, 60, 0]], [[80, 0, 0], [80, 60, 0]]])?;
+    /// assert_eq!(Room::of_section(floor.surface(), 5)?, Room::new(floor.surface(), floor.surface(), 5)?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn of_section(net: SurfaceNet<'_>, depth: u32) -> Result<Self, IntersectError> {
+        check_depth(depth)?;
+        let vertices = [net.is_triangle(), false].map(|triangle| vertex_count(triangle, depth));
+        Ok(Self { vertices: vertices[0] + vertices[1], boxes: 2 * box_count(depth) })
+    }
 }
 
 /// The curves in which two surfaces meet, and what is certain about them.
@@ -235,7 +271,7 @@ pub struct Intersection<'b> {
     points: &'b [CurvePoint],
     curves: &'b [Curve],
     branches: &'b [Branch],
-    /// Parts, chains and ends about which nothing certain can be said.
+    /// Parts, edges, chains and ends about which nothing certain can be said.
     pub undecided: u32,
     /// Predicates that were zero and decided by moving B by an infinitesimal.
     pub zero_predicates: u32,
@@ -250,6 +286,19 @@ pub struct Intersection<'b> {
 }
 
 impl<'b> Intersection<'b> {
+    /// Of surfaces that are apart for certain.
+    const EMPTY: Self = Self {
+        points: &[],
+        curves: &[],
+        branches: &[],
+        undecided: 0,
+        zero_predicates: 0,
+        perturbation_sensitive: false,
+        degenerate_triangles: 0,
+        segments: 0,
+        tested: true,
+    };
+
     /// The components: curves, touching points, borders of regions.
     #[must_use]
     pub const fn curves(&self) -> &'b [Curve] {
@@ -268,7 +317,7 @@ impl<'b> Intersection<'b> {
         self.branches
     }
 
-    /// Whether the loop-free test left nothing undecided.
+    /// Whether the loop-free test ran and nothing was left undecided: no curve is missing.
     #[must_use]
     pub const fn is_certified(&self) -> bool {
         self.tested && self.undecided == 0
@@ -277,6 +326,14 @@ impl<'b> Intersection<'b> {
 
 fn check_depth(depth: u32) -> Result<(), IntersectError> {
     if (MIN_DEPTH..=MAX_DEPTH).contains(&depth) { Ok(()) } else { Err(IntersectError::Depth { depth }) }
+}
+
+fn check(options: &Options) -> Result<(), IntersectError> {
+    check_depth(options.depth)?;
+    if options.tolerance <= 0 {
+        return Err(IntersectError::Tolerance { bits: options.tolerance.to_bits() });
+    }
+    Ok(())
 }
 
 /// The nets in an order that does not depend on that of the arguments.
@@ -293,7 +350,8 @@ fn is_ordered(a: &SurfaceNet<'_>, b: &SurfaceNet<'_>) -> bool {
 
 /// The curves in which two surfaces meet.
 ///
-/// Depth 5 finds all components that are larger than two cells or so; smaller ones are found by the loop-free test. On a host a
+/// Depth 5 finds all components that are larger than two cells or so; smaller ones are found by the loop-free test, by the
+/// edges' points on the other patch and by the passages between parts. On a host a
 /// transversal pair of bicubic patches takes about a millisecond at depth 5.
 ///
 /// # Errors
@@ -342,22 +400,20 @@ pub fn intersect<'b>(
     options: &Options,
     buffers: Buffers<'b>,
 ) -> Result<Intersection<'b>, IntersectError> {
-    check_depth(options.depth)?;
-    if options.tolerance <= 0 {
-        return Err(IntersectError::Tolerance { bits: options.tolerance.to_bits() });
-    }
+    check(options)?;
     if is_ordered(&a, &b) {
-        return in_order([a, b], options, buffers, false);
+        return in_order([a, b], None, options, buffers, false);
     }
-    in_order([b, a], options, buffers, true).map_err(|error| match error {
+    in_order([b, a], None, options, buffers, true).map_err(|error| match error {
         IntersectError::DegeneratePatch { side } => IntersectError::DegeneratePatch { side: side.other() },
         other => other,
     })
 }
 
-/// The same with the nets in their order; `exchanged`: the caller's A is the second.
+/// The same with the nets in their order; `exchanged`: the caller's A is the second. `plane`: finer corners of B.
 fn in_order<'b>(
     nets: [SurfaceNet<'_>; 2],
+    plane: Option<&[[i64; 3]; 4]>,
     options: &Options,
     buffers: Buffers<'b>,
     exchanged: bool,
@@ -385,9 +441,14 @@ fn in_order<'b>(
     }
     let room = records.len().min(links.len()) & !1;
     let (records, links) = (records.get_mut(..room).unwrap_or(&mut []), links.get_mut(..room).unwrap_or(&mut []));
-    let out = Output { points, used: 0, curves, curve_count: 0, branches, branch_count: 0, unrefined: 0 };
+    let out = Output { points, used: 0, curves, curve_count: 0, branches, branch_count: 0, unrefined: 0, aside: 0 };
     let found = in_rooms(nets[0].points().len().max(nets[1].points().len()), |rooms| {
-        let pair = Pair::new(nets, rooms);
+        let [one, two] = rooms;
+        let second = match plane {
+            None => Sheet::new(nets[1], two),
+            Some(corners) => Sheet::of_plane(nets[1], corners, two),
+        };
+        let pair = Pair::of([Sheet::new(nets[0], one), second]);
         let tolerance = Real::new(options.tolerance.to_bits(), -44);
         let cell = pair.extent.shl(1 - depth as i32);
         let solver = Solver { pair: &pair, out, tolerance, cell, undecided: 0 };
@@ -415,24 +476,31 @@ fn solve<'b>(
     options: &Options,
     (records, links): (&mut [u64], &mut [u32]),
 ) -> Result<(Output<'b>, Intersection<'b>), IntersectError> {
-    let edges = edges::find(solver.pair, grids, solver.tolerance, &mut solver.out)?;
+    let edges = edges::find(solver.pair, EDGE_PAIRS, solver.tolerance, &mut solver.out)?;
     solver.undecided += edges.undecided;
     let (found, perturbation_sensitive) = segments(grids, options, records, links)?;
     let used = 2 * found.segments;
-    let (records, links) = (records.get_mut(..used).unwrap_or(&mut []), links.get_mut(..used).unwrap_or(&mut []));
+    let (records, spare) = records.split_at_mut_checked(used).unwrap_or((&mut [], &mut []));
+    let links = links.get_mut(..used).unwrap_or(&mut []);
+    let mut few = [0; FEW];
+    let mut cells = Cells::new(if spare.len() < FEW { &mut few } else { spare });
     let mut chains = Chains::new(records, links, found.degenerate > 0, |c| is_border(grids, c))?;
 
     // A region of coincidence is a contact everywhere.
     let tested = options.certificate_pairs > 0 && !edges.overlap;
     let mut report = Report::EMPTY;
     if tested {
-        solver.contacts(options.certificate_pairs, &mut report)?;
+        solver.contacts(options.certificate_pairs, &mut report, &mut cells)?;
     }
     solver.arms()?;
     solver.borders(grids, &mut chains)?;
     solver.chains(grids, &mut chains)?;
+    solver.roots()?;
     solver.around(&report)?;
     solver.leftovers(&report)?;
+    if tested && solver.undecided == 0 {
+        solver.passages(&mut cells)?;
+    }
     let flags = Intersection {
         points: &[],
         curves: &[],
@@ -464,14 +532,15 @@ fn segments(
     if found.zeros == 0 {
         return Ok((found, false));
     }
-    let mut signature = |positive: bool| -> Result<Signature, IntersectError> {
-        let found = descent::descend(grids, positive, options.pairs, records)?;
+    let mut signature = |found: &Found, records: &mut [u64]| -> Result<Signature, IntersectError> {
         let used = 2 * found.segments;
         let (records, links) = (records.get_mut(..used), links.get_mut(..used));
         let (records, links) = (records.unwrap_or(&mut []), links.unwrap_or(&mut []));
         Chains::new(records, links, found.degenerate > 0, |c| is_border(grids, c))?.signature()
     };
-    let is_sensitive = signature(true)? != signature(false)?;
+    let one = signature(&found, records)?;
+    let other = descent::descend(grids, false, options.pairs, records)?;
+    let is_sensitive = one != signature(&other, records)?;
     descent::descend(grids, true, options.pairs, records)?;
     Ok((found, is_sensitive))
 }

@@ -4,10 +4,9 @@
 //! with r = R − S, the normals nA and nB, T = nA × nB and a plane through c with normal τ,
 //! δ = \[(nB·r)(τ × nA) + (τ·(c − S)) T\] / (τ·T) is the move of S within its tangent plane, δ − r that of R.
 
-use super::sheet::{Homogeneous, Jet, ONE, POINT_BITS, Place, Sheet};
+use super::sheet::{Jet, ONE, POINT_BITS, Place, Sheet};
 use super::vector::V3;
 use crate::num::Real;
-use crate::patch::SurfaceNet;
 
 /// Parameters are in units of 2^-48.
 use super::sheet::PARAMETER_BITS;
@@ -79,9 +78,12 @@ pub(super) fn shifted(place: Place, by: [Real; 2]) -> Place {
 }
 
 impl<'a> Pair<'a> {
-    /// Two patches in rooms of as many points as they have, or more.
-    pub(super) fn new([a, b]: [SurfaceNet<'a>; 2], [one, two]: [&'a mut [Homogeneous]; 2]) -> Self {
-        let sheets = [Sheet::new(a, one), Sheet::new(b, two)];
+    /// Control points of the larger net.
+    pub(super) fn most_points(&self) -> usize {
+        self.sheets.iter().fold(0, |most, sheet| most.max(sheet.source.points().len()))
+    }
+
+    pub(super) fn of(sheets: [Sheet<'a>; 2]) -> Self {
         let mut pair = Self { sheets, accept: Real::ZERO, extent: Real::ZERO };
         pair.extent = pair.sheets[0].extent.max(pair.sheets[1].extent);
         pair.accept = Real::power(-36).max(pair.extent.shl(-46));

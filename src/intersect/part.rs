@@ -6,6 +6,7 @@
 //! angle whose sine is at most that over sin γ (after Sederberg and Meyers 1988). A rational part has the derivatives
 //! (A' − S w')/w; moved to its centre, |S| is at most its radius, which widens the cone.
 
+use super::line::Line;
 use super::sheet::{Homogeneous, ONE, PARAMETER_BITS, Place, ROOM, Sheet, between, combine};
 use super::vector::V3;
 use crate::num::Real;
@@ -53,6 +54,40 @@ impl Region {
         }
     }
 
+    /// The halves of a part of a line: `j` is 0.
+    pub(super) fn halves(self) -> [Self; 2] {
+        [0, 1].map(|d| Self { level: self.level + 1, i: 2 * self.i + d, ..self })
+    }
+
+    /// The borders of a part that it shares with parts before it, each with its ends; a triangle's third one too. Between
+    /// neighbours every border is one of these of one of them, and of the other none.
+    pub(super) fn borders(self, triangle: bool) -> [Option<[Place; 2]>; 3] {
+        if self.upper {
+            return [None; 3];
+        }
+        let [low, u, v] = [self.place(0, 0), self.place(1, 0), self.place(0, 1)];
+        let inner = |outside: bool, ends: [Place; 2]| (!outside).then_some(ends);
+        [inner(self.i == 0, [low, v]), inner(self.j == 0, [low, u]), inner(!triangle || u[0] + u[1] >= ONE, [u, v])]
+    }
+
+    /// In 32 bits.
+    pub(super) fn pack(self) -> u32 {
+        u32::from(self.level) << 28
+            | u32::from(self.i & 0x1fff) << 15
+            | u32::from(self.j & 0x1fff) << 2
+            | u32::from(self.upper)
+    }
+
+    pub(super) fn unpack(bits: u32) -> Self {
+        let part = |shift: u32| (bits >> shift) as u16 & 0x1fff;
+        Self { level: (bits >> 28) as u8, i: part(15), j: part(2), upper: bits & 1 == 1 }
+    }
+
+    /// The ends of a part of a line.
+    pub(super) fn range(self) -> [i64; 2] {
+        [self.place(0, 0)[0], self.place(1, 0)[0]]
+    }
+
     /// A place well inside.
     pub(super) fn centre(self, triangle: bool) -> Place {
         let size = ONE >> self.level;
@@ -61,6 +96,18 @@ impl Region {
             (false, _) => [u + size / 2, v + size / 2],
             (true, false) => [u + size / 3, v + size / 3],
             (true, true) => [u + size - size / 3, v + size - size / 3],
+        }
+    }
+
+    /// Whether a place lies in the part, up to `slack`.
+    pub(super) fn contains(self, place: Place, triangle: bool, slack: i64) -> bool {
+        let size = ONE >> self.level;
+        let [u, v] = both!(|k| place[k] - self.place(0, 0)[k]);
+        let (least, most) = (u.min(v) >= -slack, u.max(v) <= size + slack);
+        match (triangle, self.upper) {
+            (false, _) => least && most,
+            (true, false) => least && u + v <= size + slack,
+            (true, true) => most && u + v >= size - slack,
         }
     }
 
@@ -87,16 +134,41 @@ pub(super) struct Part<'r> {
     is_aimed: bool,
 }
 
+/// How two parts can meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Meeting {
+    /// Not at all.
+    Apart,
+    /// In curves that go through, none of them closed; they touch nowhere.
+    Through,
+    /// In any way.
+    Any,
+}
+
 /// Directions of normals about an axis, up to sign.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cone {
     pub(super) axis: V3,
     /// The sine of the half angle; above 1 where nothing is known.
     pub(super) sine: Real,
+    /// Unit axes of the derivatives by u and v.
+    pub(super) along: [V3; 2],
+    /// How much directions may turn a share of the part beyond it.
+    pub(super) turn: Real,
+}
+
+/// Directions about a unit axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Directions {
+    pub(super) axis: V3,
+    /// 2 sin of half the largest angle from it.
+    pub(super) spread: Real,
+    /// How much directions may turn a share of the part beyond it.
+    pub(super) turn: Real,
 }
 
 impl Cone {
-    const UNKNOWN: Self = Self { axis: V3::ZERO, sine: Real::int(2) };
+    const UNKNOWN: Self = Self { axis: V3::ZERO, sine: Real::int(2), along: [V3::ZERO; 2], turn: Real::ZERO };
 
     /// Whether the half angle is below 45 degrees.
     pub(super) fn is_narrow(&self) -> bool {
@@ -121,46 +193,50 @@ fn lerp(a: &Homogeneous, b: &Homogeneous, t: i64) -> Homogeneous {
 }
 
 /// A de Casteljau step of entry i.
-fn advance(values: &mut Line, i: usize, t: i64) {
+fn advance(values: &mut Row, i: usize, t: i64) {
     let i = i.min(MAX_DEGREE - 1);
     values[i] = lerp(&values[i], &values[i + 1], t);
 }
 
 /// A row of control points.
-type Line = [Homogeneous; MAX_DEGREE + 1];
+pub(super) type Row = [Homogeneous; MAX_DEGREE + 1];
 
 /// The points of a net that begin at `start`, `step` apart.
-fn line(net: &[Homogeneous], (start, step): (usize, usize)) -> Line {
-    let mut line = [[0; 4]; MAX_DEGREE + 1];
-    for (value, point) in line.iter_mut().zip(net.iter().skip(start).step_by(step)) {
+pub(super) fn row(net: &[Homogeneous], (start, step): (usize, usize)) -> Row {
+    let mut row = [[0; 4]; MAX_DEGREE + 1];
+    for (value, point) in row.iter_mut().zip(net.iter().skip(start).step_by(step)) {
         *value = *point;
     }
-    line
+    row
 }
 
-/// Writes the control points of the part low ..= high of a curve of degree `n` into a net, from `start`, `step` apart: the
-/// blossom at low^(n−k) high^k. The curve's own points are used up.
+/// Turns a curve into its part low ..= high; both are multiples of 2^-14.
+///
+/// First the part up to `high`, then what is after low/high of that: n (n + 1) steps of de Casteljau's algorithm. The quotient
+/// is rounded to 2^-48, which moves points by less than 2^-30 unit.
 #[inline(never)]
-fn split(line: &mut Line, n: usize, [low, high]: [i64; 2], net: &mut [Homogeneous], (start, step): (usize, usize)) {
-    // `line` holds the values after n − k steps at `low`; k steps at `high` remain.
-    for k in (0..=n.min(MAX_DEGREE)).rev() {
-        let mut rest = *line;
-        for left in (1..=k).rev() {
-            for i in 0..left {
-                advance(&mut rest, i, high);
+pub(super) fn piece(row: &mut Row, n: usize, [low, high]: [i64; 2]) {
+    let n = n.min(MAX_DEGREE);
+    if high < ONE {
+        for k in 1..=n {
+            for i in (k..=n).rev() {
+                let (before, i) = (i.saturating_sub(1).min(MAX_DEGREE), i.min(MAX_DEGREE));
+                row[i] = lerp(&row[before], &row[i], high);
             }
         }
-        if let Some(out) = net.get_mut(start + k * step) {
-            *out = rest[0];
-        }
-        for i in 0..k {
-            advance(line, i, low);
+    }
+    if low > 0 {
+        let share = ((low >> 34) << PARAMETER_BITS).checked_div(high >> 34).unwrap_or(0);
+        for left in (1..=n).rev() {
+            for i in 0..left {
+                advance(row, i, share);
+            }
         }
     }
 }
 
 /// The blossom of a triangular net: `counts` steps at each of the corners.
-fn triangle_blossom(net: &[Homogeneous], n: usize, corners: &[Place; 3], counts: [usize; 3]) -> Homogeneous {
+pub(super) fn triangle_blossom(net: &[Homogeneous], n: usize, corners: &[Place; 3], counts: [usize; 3]) -> Homogeneous {
     let mut values = [[0; 4]; triangle_len(MAX_DEGREE)];
     for (out, value) in values.iter_mut().zip(net).take(triangle_len(n)) {
         *out = *value;
@@ -218,16 +294,51 @@ impl<'r> Part<'r> {
         } else {
             let ([u, v], [x, y]) = (region.place(0, 0), region.place(1, 1));
             for i in 0..=m {
-                let row = (i * (h + 1), 1);
-                split(&mut line(sheet.net, row), h, [v, y], self.hull, row);
+                let mut along = row(sheet.net, (i * (h + 1), 1));
+                piece(&mut along, h, [v, y]);
+                self.write(&along, h, (i * (h + 1), 1));
             }
             for j in 0..=h {
-                let column = (j, h + 1);
-                split(&mut line(self.hull, column), m, [u, x], self.hull, column);
+                let mut across = row(self.hull, (j, h + 1));
+                piece(&mut across, m, [u, x]);
+                self.write(&across, m, (j, h + 1));
             }
         }
-        self.region = Some(region);
         (self.triangle, self.degrees, self.count) = (sheet.triangle, (m, h), count);
+        self.finish(sheet, region);
+    }
+
+    /// Writes a row of degree `n` into the hull.
+    fn write(&mut self, row: &Row, n: usize, (start, step): (usize, usize)) {
+        for (out, value) in self.hull.iter_mut().skip(start).step_by(step).zip(row).take(n + 1) {
+            *out = *value;
+        }
+    }
+
+    /// Becomes the part of a line of a patch over an interval.
+    #[inline(never)]
+    pub(super) fn load_line(&mut self, sheet: &Sheet<'_>, line: &Line, region: Region) {
+        let [low, high] = region.range();
+        let (row, n) = match line.edge {
+            Some(edge) => {
+                let n = sheet.edge_degree(edge).min(MAX_DEGREE);
+                let mut row = [[0; 4]; MAX_DEGREE + 1];
+                for (k, out) in row.iter_mut().enumerate().take(n + 1) {
+                    *out = sheet.edge_index(edge, k).and_then(|at| sheet.net.get(at)).copied().unwrap_or([0; 4]);
+                }
+                piece(&mut row, n, [low, high]);
+                (row, n)
+            }
+            None => sheet.row(line.place(low), line.place(high)),
+        };
+        self.write(&row, n, (0, 1));
+        (self.triangle, self.degrees, self.count) = (false, (n, 0), n + 1);
+        self.finish(sheet, region);
+    }
+
+    /// The control points in the hull become that; its box.
+    fn finish(&mut self, sheet: &Sheet<'_>, region: Region) {
+        self.region = Some(region);
         (self.low, self.high) = ([i64::MAX; 3], [i64::MIN; 3]);
         self.is_aimed = false;
         self.project(sheet);
@@ -263,6 +374,14 @@ impl<'r> Part<'r> {
         }
     }
 
+    /// The direction of the third side of a triangular part; zero for others.
+    pub(super) fn diagonal(&self) -> V3 {
+        let corner = |at: usize| self.hull.get(at).copied().unwrap_or([0; 4]);
+        let corners = [corner(0), corner(triangle_index(self.degrees.0.min(MAX_DEGREE), 0))];
+        let [from, to] = if self.triangle { corners } else { [[0; 4]; 2] };
+        V3::bits(three!(|k| to[k] - from[k]), 0).unit()
+    }
+
     fn points(&self) -> &[Homogeneous] {
         self.hull.get(..self.count).unwrap_or(&[])
     }
@@ -281,6 +400,20 @@ impl<'r> Part<'r> {
         (0..3).all(|k| self.low[k] <= other.high[k] + SLACK && other.low[k] <= self.high[k] + SLACK)
     }
 
+    /// What the hulls and the cones of normals say of two parts.
+    pub(super) fn meeting(&mut self, other: &mut Self) -> Meeting {
+        if !self.boxes_meet(other) {
+            return Meeting::Apart;
+        }
+        self.aim();
+        other.aim();
+        let (one, two) = (self.cone, other.cone);
+        if [one.axis, two.axis].into_iter().any(|axis| !axis.is_zero() && self.is_apart_along(other, axis)) {
+            return Meeting::Apart;
+        }
+        if one.is_narrow() && two.is_narrow() && one.is_apart(&two) { Meeting::Through } else { Meeting::Any }
+    }
+
     /// Whether a plane across a direction lies between the hulls.
     pub(super) fn is_apart_along(&self, other: &Self, direction: V3) -> bool {
         let axis = direction.fixed(18);
@@ -297,29 +430,48 @@ impl<'r> Part<'r> {
 
     /// The cone of normals.
     fn normals(&self) -> Cone {
+        let mut points = [[0; 3]; ROOM];
+        let radius = self.centre(&mut points);
+        let Some(along_u) = self.directions(&points, radius, 0) else { return Cone::UNKNOWN };
+        let Some(along_v) = self.directions(&points, radius, 1) else { return Cone::UNKNOWN };
+        let across = along_u.axis.cross(along_v.axis);
+        let sine = across.norm();
+        if sine.is_zero() {
+            return Cone::UNKNOWN;
+        }
+        Cone {
+            axis: across * (Real::ONE / sine),
+            sine: (along_u.spread + along_v.spread) / sine + Real::power(-20),
+            along: [along_u.axis, along_v.axis],
+            turn: (along_u.turn + along_v.turn) / sine,
+        }
+    }
+
+    /// The directions of a line's tangents.
+    pub(super) fn tangents(&self) -> Option<Directions> {
+        let mut points = [[0; 3]; ROOM];
+        let radius = self.centre(&mut points);
+        self.directions(&points, radius, 0)
+    }
+
+    /// Writes weighted control points about the middle with at most 29 bits; how far any point of the part is from it.
+    fn centre(&self, points: &mut [[i64; 3]; ROOM]) -> i64 {
         let middle = three!(|k| (self.low[k] >> 1) + (self.high[k] >> 1));
-        // Weighted control points about the middle with at most 29 bits.
         let size = self.size().max(1);
         let shift = (64 - size.leading_zeros() as i32 - 28).max(0);
-        let mut points = [[0_i64; 3]; ROOM];
         for (out, p) in points.iter_mut().zip(self.points()) {
             for k in 0..3 {
                 out[k] = (((p[k] - middle[k]) >> shift) * p[3]) >> 24;
             }
         }
-        let radius = (size >> shift) + 1;
-        let Some(along_u) = self.directions(&points, radius, 0) else { return Cone::UNKNOWN };
-        let Some(along_v) = self.directions(&points, radius, 1) else { return Cone::UNKNOWN };
-        let across = along_u.0.cross(along_v.0);
-        let sine = across.norm();
-        if sine.is_zero() {
-            return Cone::UNKNOWN;
-        }
-        Cone { axis: across * (Real::ONE / sine), sine: (along_u.1 + along_v.1) / sine + Real::power(-20) }
+        (size >> shift) + 1
     }
 
-    /// The unit axis of the derivatives along u or v, and 2 sin of half their angle from it.
-    fn directions(&self, points: &[[i64; 3]; ROOM], radius: i64, along: usize) -> Option<(V3, Real)> {
+    /// The directions of the derivatives along u or v.
+    ///
+    /// Beyond the part by a share ε, each of n − 1 steps of de Casteljau's algorithm moves a difference by ε times another
+    /// less itself: 2 n ε times the longest in all, and directions turn by that over the shortest.
+    fn directions(&self, points: &[[i64; 3]; ROOM], radius: i64, along: usize) -> Option<Directions> {
         let mut sum = [0_i64; 3];
         self.differences(along, |a, b| {
             let [p, q] = [a, b].map(|k| points.get(k).copied().unwrap_or([0; 3]));
@@ -330,7 +482,7 @@ impl<'r> Part<'r> {
         if length.is_zero() {
             return None;
         }
-        let (mut worst, mut shortest, mut turn) = (Real::ZERO, Real::power(60), 0_i64);
+        let (mut worst, mut shortest, mut longest, mut turn) = (Real::ZERO, Real::power(60), Real::ZERO, 0_i64);
         let weight = |k: usize| self.hull.get(k).map_or(0, |p| p[3]);
         self.differences(along, |a, b| turn = turn.max((weight(a) - weight(b)).abs()));
         // Two units of rounding a component, and what the weights' change adds.
@@ -348,7 +500,7 @@ impl<'r> Part<'r> {
                 return;
             }
             worst = worst.max(aside / least.square());
-            shortest = shortest.min(least);
+            (shortest, longest) = (shortest.min(least), longest.max(d.square()));
         });
         if bad {
             return None;
@@ -356,7 +508,11 @@ impl<'r> Part<'r> {
         let worst = worst.sqrt() + widening / shortest;
         // tan α to 2 sin(α/2) = √(2 − 2 cos α).
         let cosine = Real::ONE / (Real::ONE + worst.square()).sqrt();
-        Some((axis * inverse, ((Real::ONE - cosine).shl(1)).max(Real::ZERO).sqrt()))
+        Some(Directions {
+            axis: axis * inverse,
+            spread: ((Real::ONE - cosine).shl(1)).max(Real::ZERO).sqrt(),
+            turn: (longest.sqrt() + widening) / shortest * Real::int(2 * MAX_DEGREE as i64),
+        })
     }
 
     /// Calls `visit` with the indices of neighbours along u or v.

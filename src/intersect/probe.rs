@@ -1,14 +1,12 @@
-//! Single points: where a curve meets a surface, and the nearest point of a surface.
+//! The nearest point of a surface.
 
-use super::curve::CurvePoint;
 use super::grid::{Grid, GridBox, GridVertex, vertex_count};
-use super::newton::{Pair, difference, pull_back, shifted};
+use super::newton::{difference, pull_back, shifted};
 use super::sheet::{ONE, POINT_BITS, Place, ROOM, Sheet};
-use super::vector::V3;
-use super::{Buffer, I16F48, I20F44, IntersectError, check_depth};
+use super::{I16F48, I20F44, IntersectError, check_depth};
 use crate::geometry::Point3;
 use crate::num::{Coord, I16F16, Real};
-use crate::patch::{CurveNet, MAX_DEGREE, SurfaceNet, TensorNet};
+use crate::patch::SurfaceNet;
 
 /// The point of a patch nearest to a given one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -154,101 +152,4 @@ fn descend(sheet: &Sheet<'_>, start: Place, c: [i64; 3]) -> Place {
         place = next;
     }
     place
-}
-
-/// Finds the points where a curve meets a surface: their number; parameters t on the curve, as A's first parameter, and
-/// (u, v) on the surface, as B's. They are in the order of t; tangents are the curve's.
-///
-/// The curve's chords over 2^depth steps are cut with the surface's grid of that depth, exactly, and each cut is refined
-/// by Newton's method in three unknowns. A curve that touches the surface, or crosses it twice within a step and a cell, may
-/// be missed; use [`intersect`](super::intersect) for certainty about surfaces. Stack: 6 KB. Buffers as of
-/// [`project`].
-///
-/// # Errors
-/// [`IntersectError::Buffer`] for more points than there is room for, else as of [`project`].
-///
-/// # Examples
-/// ```
-/// use embedded_surfaces::intersect::{CurvePoint, curve_points};
-/// use embedded_surfaces::patch::{BilinearPatch, Curve, Surface};
-///
-/// let floor = BilinearPatch::from_ints([[[0, 0, 0], [0, 60, 0]], [[80, 0, 0], [80, 60, 0]]])?;
-/// let line = Curve::<2>::from_ints([[20, 20, -10], [40, 40, 10]])?;
-/// let (mut vertices, mut boxes) = ([[0; 3]; 81], [[[0; 3]; 2]; 85]);
-/// let mut found = [CurvePoint::BLANK; 4];
-/// let count = curve_points(line.net(), floor.surface(), 3, &mut vertices, &mut boxes, &mut found)?;
-/// assert_eq!((count, found[0].position.x.to_num::<i32>()), (1, 30));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn curve_points(
-    curve: CurveNet<'_>,
-    net: SurfaceNet<'_>,
-    depth: u32,
-    vertices: &mut [GridVertex],
-    boxes: &mut [GridBox],
-    out: &mut [CurvePoint],
-) -> Result<usize, IntersectError> {
-    let grid = grid(net, depth, vertices, boxes)?;
-    // The curve as one row of a ruled patch: t is its first parameter, the second has no length.
-    let mut points = [Point3::ORIGIN; 2 * (MAX_DEGREE + 1)];
-    for (pair, point) in points.chunks_exact_mut(2).zip(curve.points()) {
-        pair.fill(*point);
-    }
-    let count = 2 * curve.points().len();
-    let ruled = TensorNet::of_checked((curve.degree(), 1), points.get(..count).unwrap_or(&points));
-    let mut one = [[0; 4]; ROOM];
-    let mut two = [[0; 4]; ROOM];
-    let pair = Pair::new([SurfaceNet::Tensor(ruled), net], [&mut one, &mut two]);
-    let steps = 1_i64 << depth;
-    let mut used = 0;
-    let point_at = |k: i64| {
-        let jet = pair.sheets[0].eval([k << (48 - depth), 0], 0);
-        jet.map_or([0; 3], |jet| jet.point.map(|c| ((c + (1 << 27)) >> 28) as i32))
-    };
-    let mut from = point_at(0);
-    for k in 0..steps {
-        let to = point_at(k + 1);
-        let mut found = [None; 16];
-        super::descent::pierce(&grid, [from, to], |share, place| {
-            let t = (k << (48 - depth)) + (share * Real::power(-(depth as i32))).nearest(48);
-            let spot = pair.on_edge(0, 2, [[t, 0], place]);
-            let close = |p: i64, q: i64| (p - q).abs() <= 1 << 20;
-            if let Some(spot) = spot.filter(|s| pair.sheets[1].contains(s.at[1], super::trace::BORDER)) {
-                let known =
-                    |s: &super::newton::Spot| close(s.at[0][0], spot.at[0][0]) && close(s.at[1][0], spot.at[1][0]);
-                let is_new = !found.iter().flatten().any(known);
-                if let Some(free) = found.iter_mut().find(|f| f.is_none()).filter(|_| is_new) {
-                    *free = Some(spot);
-                }
-            }
-        })?;
-        for spot in found.iter_mut().flatten() {
-            let jet = pair.sheets[0].eval(spot.at[0], 1);
-            spot.tangent = jet.map_or(V3::ZERO, |jet| jet.first[0].unit());
-            let point = CurvePoint::of(spot);
-            let known = out.iter().take(used).any(|p| {
-                let [a, b] = [p.places(), spot.at];
-                (0..2).all(|s| (0..2).all(|k| (a[s][k] - b[s][k]).abs() <= 1 << 20))
-            });
-            if known {
-                continue;
-            }
-            let given = out.len();
-            let full = IntersectError::Buffer { buffer: Buffer::Points, needed: given + 1, given };
-            *out.get_mut(used).ok_or(full)? = point;
-            used += 1;
-        }
-        from = to;
-    }
-    // In the order of t: few points, by insertion.
-    for i in 1..used {
-        for j in (1..=i).rev() {
-            if let Some([a, b]) = out.get_mut(j - 1..=j)
-                && b.parameters[0][0] < a.parameters[0][0]
-            {
-                core::mem::swap(a, b);
-            }
-        }
-    }
-    Ok(used)
 }

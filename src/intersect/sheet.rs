@@ -261,7 +261,7 @@ impl<'a> Sheet<'a> {
     fn factors(&self) -> [usize; 5] {
         let (m, h) = self.degrees;
         let mixed = if self.triangle { m * (m - 1) } else { m * h };
-        [m, h, m * (m - 1), mixed, h * (h - 1)]
+        [m, h, m * (m - 1), mixed, h * h.saturating_sub(1)]
     }
 
     /// A sum as a vector, times a factor.

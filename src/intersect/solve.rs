@@ -1,5 +1,6 @@
 //! From seeds to curves: borders, contacts, arms of branches, and every chain of the mesh that no curve covers yet.
 
+use super::cells::{self, Cells};
 use super::certify::{DEEPEST, Report, SHALLOW, Search};
 use super::chain::Chains;
 use super::contact::{Contact, Form};
@@ -116,6 +117,19 @@ impl<'s, 'a> Solver<'s, 'a, '_> {
         curves.into_iter().any(|c| on_pieces(self.out.points_of(c), c.closed, point, reach))
     }
 
+    /// Whether a point near both surfaces lies in a region where they coincide: both have the same foot, where they are parallel.
+    fn is_in_region(&self, at: Places, point: [i64; 3]) -> bool {
+        if self.out.finished().iter().all(|c| c.kind != CurveKind::OverlapRegion) {
+            return false;
+        }
+        let feet = both!(|s| self.pair.foot(s, at[s], point));
+        let [Some((u, a)), Some((v, b))] = feet else { return false };
+        let cosine = a.normal().unit().dot(b.normal().unit()).abs();
+        self.pair.inside([u, v], 0)
+            && difference(a.point, b.point).norm() <= self.pair.touching()
+            && cosine > Real::ONE - Real::power(-10)
+    }
+
     /// Whether a point within a region lies on both surfaces, which are parallel there.
     fn is_coincident(&self, point: [i64; 3], near: usize) -> bool {
         let Some(border) = self.out.points.get(near) else { return false };
@@ -205,9 +219,15 @@ impl<'s, 'a> Solver<'s, 'a, '_> {
     }
 
     /// Runs the loop-free test and enters what its contacts are: touching points, tangential curves, branches.
+    /// Keeps the pairs through which curves go.
     #[inline(never)]
-    pub(super) fn contacts(&mut self, budget: u32, report: &mut Report) -> Result<(), IntersectError> {
-        self.test(budget, report)?;
+    pub(super) fn contacts(
+        &mut self,
+        budget: u32,
+        report: &mut Report,
+        cells: &mut Cells<'_>,
+    ) -> Result<(), IntersectError> {
+        self.test(budget, report, cells)?;
         self.undecided = self.undecided.saturating_add(report.undecided);
         for found in report.list().filter(|f| f.touches) {
             match found.form {
@@ -223,12 +243,15 @@ impl<'s, 'a> Solver<'s, 'a, '_> {
     }
 
     #[inline(never)]
-    fn test(&mut self, budget: u32, report: &mut Report) -> Result<(), IntersectError> {
+    fn test(&mut self, budget: u32, report: &mut Report, cells: &mut Cells<'_>) -> Result<(), IntersectError> {
         for (deepest, budget) in [(SHALLOW, budget / 2), (DEEPEST, budget)] {
             report.undecided = 0;
+            cells.restart(deepest);
             let mut search = Search::new(self.pair, deepest);
             let mut known = false;
-            while let Some(at) = search.run(report, budget, known, |point, reach| self.touches_near(point, reach)) {
+            while let Some(at) =
+                search.run((report, cells), budget, known, |point, reach| self.touches_near(point, reach))
+            {
                 known = self.is_on_ridge(at)?;
             }
             if report.undecided == 0 {
@@ -441,6 +464,45 @@ impl<'s, 'a> Solver<'s, 'a, '_> {
         Ok(())
     }
 
+    /// Follows curves from the points of edges on the other patch that no curve reaches.
+    pub(super) fn roots(&mut self) -> Result<(), IntersectError> {
+        while let Some(root) = self.out.take_back() {
+            if self.is_covered(root.bits()) {
+                continue;
+            }
+            self.seed(root.places())?;
+        }
+        Ok(())
+    }
+
+    /// Follows curves from where they pass between parts of the loop-free test, if none is known there.
+    pub(super) fn passages(&mut self, cells: &mut Cells<'_>) -> Result<(), IntersectError> {
+        let pair = self.pair;
+        let mut k = 0;
+        while let Some(cell) = cells.get(pair, k) {
+            let undecided = cells::pass(pair, cell, &mut |spot| {
+                if self.is_covered(spot.point) { Ok(()) } else { self.seed(spot.at) }
+            })?;
+            self.undecided = self.undecided.saturating_add(undecided);
+            k += 1;
+        }
+        Ok(())
+    }
+
+    /// Follows the curve through a place on both surfaces.
+    fn seed(&mut self, at: Places) -> Result<(), IntersectError> {
+        let Some(jets) = self.pair.jets(at, 1) else {
+            self.undecided += 1;
+            return Ok(());
+        };
+        let spot = self.pair.spot(at, &jets);
+        if spot.sine > SINGULAR {
+            return self.follow(Locus::Crossing, &spot);
+        }
+        self.undecided += u32::from(!self.is_explained(spot.point));
+        Ok(())
+    }
+
     fn border(&mut self, grids: [&Grid<'_>; 2], crossing: Crossing) -> Result<(), IntersectError> {
         let (at, point) = begin(grids, crossing);
         let side = usize::from(crossing.side) & 1;
@@ -481,6 +543,9 @@ impl<'s, 'a> Solver<'s, 'a, '_> {
     #[inline(never)]
     fn cross(&mut self, grids: [&Grid<'_>; 2], crossing: Crossing) -> Result<bool, IntersectError> {
         let (at, point) = begin(grids, crossing);
+        if self.is_in_region(at, point) {
+            return Ok(true);
+        }
         let Some(spot) = self.pair.nearest(at).filter(|s| s.sine > SINGULAR) else {
             return Ok(self.is_explained(point));
         };

@@ -40,16 +40,36 @@ pub(super) struct Output<'b> {
     pub(super) branch_count: usize,
     /// Pieces of the curve in hand that were not brought within the tolerance.
     pub(super) unrefined: u32,
+    /// Points at the end of the buffer that are set aside.
+    pub(super) aside: usize,
 }
 
 impl Output<'_> {
     #[inline(never)]
     pub(super) fn emit(&mut self, spot: &Spot) -> Result<(), IntersectError> {
         let given = self.points.len();
-        let full = IntersectError::Buffer { buffer: Buffer::Points, needed: given + 1, given };
-        *self.points.get_mut(self.used).ok_or(full)? = CurvePoint::of(spot);
+        let full = IntersectError::Buffer { buffer: Buffer::Points, needed: self.used + self.aside + 1, given };
+        let room = given.saturating_sub(self.aside);
+        *self.points.get_mut(..room).and_then(|points| points.get_mut(self.used)).ok_or(full)? = CurvePoint::of(spot);
         self.used += 1;
         Ok(())
+    }
+
+    /// Keeps a spot at the end of the buffer of points, until it is taken back.
+    pub(super) fn set_aside(&mut self, spot: &Spot) -> Result<(), IntersectError> {
+        let given = self.points.len();
+        let needed = self.used + self.aside + 1;
+        let full = IntersectError::Buffer { buffer: Buffer::Points, needed, given };
+        let free = self.points.get_mut(self.used..).and_then(|points| points.iter_mut().rev().nth(self.aside));
+        *free.ok_or(full)? = CurvePoint::of(spot);
+        self.aside += 1;
+        Ok(())
+    }
+
+    /// Takes back the spot set aside last.
+    pub(super) fn take_back(&mut self) -> Option<CurvePoint> {
+        self.aside = self.aside.checked_sub(1)?;
+        self.points.iter().rev().nth(self.aside).copied()
     }
 
     pub(super) fn finished(&self) -> &[Curve] {

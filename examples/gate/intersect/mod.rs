@@ -1,13 +1,16 @@
 //! Intersections of every kind of pair at the least depth, sections, curves, nearest points.
 
 use super::{Digest, Sum, data, hide};
-use embedded_surfaces::geometry::{Axis, Point3};
+use embedded_surfaces::geometry::{Axis, Point3, Vector3};
 use embedded_surfaces::intersect::{
-    Branch, Buffers, Curve, CurveKind, CurvePoint, End, I20F44, IntersectError, Intersection, MIN_DEPTH, Options,
-    Projection, Room, curve_points, intersect, project, section,
+    Branch, Buffers, Curve, CurveKind, CurvePoint, End, Held, Hit, HitKind, Hits, I16F48, I20F44, IntersectError,
+    Intersection, IsoCurve, MIN_DEPTH, Options, Plane, Projection, Room, SpaceCurve, curve_points, intersect, project,
+    section,
 };
-use embedded_surfaces::num::I16F16;
-use embedded_surfaces::patch::{BicubicPatch, BilinearPatch, CubicTriangle, Curve as Line, Surface, SurfaceNet};
+use embedded_surfaces::num::{I16F16, I32F32};
+use embedded_surfaces::patch::{
+    BicubicPatch, BilinearPatch, CubicTriangle, Curve as Line, RationalCurve, Surface, SurfaceNet,
+};
 
 static SHEET: BicubicPatch = embedded_surfaces::const_net!(BicubicPatch::from_ints([
     [[0, 0, 0], [0, 20, 9], [0, 40, 9], [0, 60, 0]],
@@ -79,6 +82,23 @@ impl Digest for CurvePoint {
     }
 }
 
+impl Digest for Hit {
+    fn digest(&self, sum: &mut Sum) {
+        [self.kind == HitKind::Touching, self.kind == HitKind::Begin].digest(sum);
+        [self.t, self.parameters[0], self.parameters[1]].map(|p| p.to_bits()).digest(sum);
+        self.position.to_array().map(I20F44::to_bits).digest(sum);
+        self.tangent.to_array().map(|c| c.to_bits()).digest(sum);
+        [self.sine.to_bits(), self.residual.to_bits() as i32].digest(sum);
+    }
+}
+
+impl Digest for Hits<'_> {
+    fn digest(&self, sum: &mut Sum) {
+        Hits::points(self).digest(sum);
+        Hits::is_certified(self).digest(sum);
+    }
+}
+
 impl Digest for Projection {
     fn digest(&self, sum: &mut Sum) {
         self.parameters.map(|p| p.to_bits()).digest(sum);
@@ -123,21 +143,52 @@ pub(super) fn calls(sum: &mut Sum) {
     let room = Room::new(nets[0], nets[1], hide(MIN_DEPTH));
     sum.add(room.map(|room| [room.vertices, room.boxes].map(|n| n as u32)));
     sum.add(Room::new(nets[0], nets[1], hide(9)).map(|_| 0_u8));
+    sum.add(Room::of_section(nets[2], hide(MIN_DEPTH)).map(|room| room.vertices as u32));
     sum.add(intersect(
         nets[0],
         hide(&data::OCTANT).surface(),
         &Options::with_depth(options(), hide(2)),
         work.buffers(),
     ));
-    for (axis, at) in [(Axis::X, 30), (Axis::Y, 21), (Axis::Z, 17)] {
-        sum.add(section(nets[0], axis, I16F16::from_num(hide(at)), &options(), work.buffers()));
+    for plane in planes() {
+        sum.add(plane.and_then(|plane| section(nets[0], plane, &options(), work.buffers())));
     }
     let point = hide(Point3::from_ints(20, 30, 90));
     sum.add(project(nets[2], point, MIN_DEPTH, &mut work.vertices, &mut work.boxes));
-    if let Ok(line) = Line::<3>::from_ints(hide([[10, 10, -40], [30, 20, 50], [50, 40, -20]])) {
-        let Work { vertices, boxes, points, .. } = work;
-        let count = curve_points(line.net(), nets[0], MIN_DEPTH, vertices, boxes, points);
-        sum.add(count.map(|n| n as u32));
-        sum.add(points.get(..count.unwrap_or(0)).unwrap_or(&[]));
+    lines(sum, nets);
+}
+
+/// Across an axis, by numbers, through a point, oblique; one without a normal.
+fn planes() -> [Result<Plane, IntersectError>; 5] {
+    let normal = hide(Vector3::new(I16F16::from_bits(-9000), I16F16::from_bits(30_000), I16F16::from_bits(70_000)));
+    [
+        Ok(Plane::across(Axis::Z, I16F16::from_num(hide(17)))),
+        Plane::from_ints(hide([1, -2, 2]), hide(20)),
+        Plane::through(hide(Point3::from_ints(30, 30, 25)), normal),
+        Plane::new(normal, hide(I32F32::from_bits(28 << 32))),
+        Plane::from_ints(hide([0; 3]), hide(1)),
+    ]
+}
+
+/// Curves of every kind against surfaces of every kind.
+fn lines(sum: &mut Sum, nets: [SurfaceNet<'_>; 3]) {
+    let Ok(line) = Line::<3>::from_ints(hide([[10, 10, -40], [30, 20, 50], [50, 40, -20]])) else { return };
+    let Ok(weighted) = RationalCurve::new(line, hide([1, 2, 1].map(I16F16::from_num))) else { return };
+    let iso = |net, held| IsoCurve::new(net, held, I16F48::from_bits(hide(3 << 46)));
+    let curves = [
+        Ok(SpaceCurve::from(line.net())),
+        Ok(SpaceCurve::from(weighted.net())),
+        iso(nets[0], Held::First).map(SpaceCurve::from),
+        iso(nets[0], Held::Second).map(SpaceCurve::from),
+        iso(nets[2], Held::Third).map(SpaceCurve::from),
+        iso(nets[0], Held::Third).map(SpaceCurve::from),
+    ];
+    let octant = hide(&data::OCTANT).surface();
+    let weighted = hide(&data::WEIGHTED).surface();
+    for net in [nets[0], nets[1], nets[2], octant, weighted] {
+        for curve in curves {
+            let mut points = [Hit::BLANK; 8];
+            sum.add(curve.and_then(|curve| curve_points(curve, net, &mut points)));
+        }
     }
 }
