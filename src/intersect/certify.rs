@@ -124,8 +124,8 @@ impl<'s, 'a> Search<'s, 'a> {
                 }
                 (regions, if answer { Verdict::Explained } else { Verdict::Open })
             } else {
-                let Some(height) = self.height.checked_sub(1) else { return None };
-                let Some(regions) = self.stack.get(height).copied() else { return None };
+                let height = self.height.checked_sub(1)?;
+                let regions = self.stack.get(height).copied()?;
                 self.height = height;
                 if report.visited >= budget {
                     report.undecided = report.undecided.saturating_add(height as u32 + 1);
