@@ -28,7 +28,7 @@ const VERTICES: usize = 2 * 33 * 33;
 const BOXES: usize = 2 * (1 + 4 + 16 + 64);
 /// 24 bytes each.
 const SEGMENTS: usize = 210;
-/// 88 bytes each.
+/// 80 bytes each.
 const POINTS: usize = 136;
 
 /// Adds the bits of all points to a checksum.

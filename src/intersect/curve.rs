@@ -7,7 +7,7 @@ use crate::geometry::{Point3, Vector3};
 use crate::num::Real;
 use fixed::types::{I2F30, I16F48, I20F44};
 
-/// A point of a curve on both surfaces. 88 bytes.
+/// A point of a curve on both surfaces. 80 bytes.
 ///
 /// Points lie within [`Curve::residual`] of both surfaces; between two of them the curve is the cubic Hermite piece with
 /// the tangents here, times the arc, chord · (1 + θ²/24) with θ the angle between the tangents.
