@@ -313,7 +313,7 @@ impl Search<'_, '_, '_> {
         let (mut last, mut near, mut side) = (low, foot, 0);
         for _ in 0..40 {
             let share = from / (from - to);
-            let t = (low + (Real::new(high - low, 0) * share).nearest(0)).clamp(low, high);
+            let t = (low + (Real::new(high - low, 0) * share).nearest(0)).max(low).min(high);
             let (spot, slope) = self.slope(t, near)?;
             if (t - last).abs() <= ONE >> 30 || high - low <= ONE >> 30 || slope.is_zero() {
                 return self.is_on(&spot).then_some(spot);
