@@ -10,7 +10,7 @@ use super::hermite::Piece;
 use super::line::Line;
 use super::newton::{Pair, Places, Spot, difference};
 use super::part::{Part, Region};
-use super::roots;
+use super::roots::{self, Lying};
 use super::sheet::in_rooms;
 use super::sheet::{ONE, Place, Sheet};
 use super::trace::{Locus, Output, Tracer};
@@ -193,7 +193,6 @@ fn collect(
     parts: &mut Parts,
     out: &mut Output<'_>,
 ) -> Result<u32, IntersectError> {
-    let other = 1 - side;
     let sheet = &pair.sheets[side & 1];
     // A degenerate edge is a point.
     let ends = [0, ONE].map(|t| sheet.eval(sheet.edge_place(edge, t), 0).map(|j| j.point));
@@ -201,34 +200,42 @@ fn collect(
     if ends[0] == ends[1] && ends[0] == centre {
         return Ok(0);
     }
-    let shared_with = (0..pair.sheets[other & 1].edge_count()).find_map(|e| {
-        let reversed = |r: &bool| are_equal(sheet, edge, &pair.sheets[other & 1], e, *r);
-        [false, true].into_iter().find(reversed).map(|r| (e, r))
-    });
-    if let Some((e, reversed)) = shared_with {
-        let spot = |t: i64| {
-            let place = pair.sheets[other & 1].edge_place(e, if reversed { ONE - t } else { t });
-            pair.shared_spot(side, edge, t, place)
-        };
-        let spots = [0, ONE / 2, ONE, ONE / 4].map(spot);
-        if let [Some(low), Some(centre), Some(high), Some(quarter)] = spots {
-            parts.enter(pair, OnSurface::new((side, edge), &[low, high], &[centre, quarter], true), &centre);
-        }
+    if collect_shared(pair, (side, edge), parts) {
         return Ok(0);
     }
     let line = Line::edge(sheet, side, edge);
     let roots = roots::find(pair, line, Region::ROOT, budget, halves, &mut |spot, _| out.set_aside(spot))?;
     let mut undecided = roots.undecided.saturating_add(roots.touching);
-    for part in roots.parts.into_iter().flatten() {
-        let inner = [2, 1].map(|k| part.spot(pair, &line, part.range[0] + (part.range[1] - part.range[0]) / 4 * k));
-        match (part.ends(pair, &line), inner) {
-            (Some(ends), [Some(centre), Some(quarter)]) => {
-                parts.enter(pair, OnSurface::new((side, edge), &ends, &[centre, quarter], false), &centre);
-            }
-            _ => undecided = undecided.saturating_add(1),
-        }
+    for part in roots.parts.iter().flatten() {
+        undecided = undecided.saturating_add(u32::from(!collect_lying(pair, &line, edge, part, parts)));
     }
     Ok(undecided)
+}
+
+/// Adds an edge that the other patch has, too; whether it does.
+#[inline(never)]
+fn collect_shared(pair: &Pair<'_>, (side, edge): (usize, usize), parts: &mut Parts) -> bool {
+    let (sheet, other) = (&pair.sheets[side & 1], &pair.sheets[(1 - side) & 1]);
+    let shared_with = (0..other.edge_count()).find_map(|e| {
+        let reversed = |r: &bool| are_equal(sheet, edge, other, e, *r);
+        [false, true].into_iter().find(reversed).map(|r| (e, r))
+    });
+    let Some((e, reversed)) = shared_with else { return false };
+    let spot = |t: i64| pair.shared_spot(side, edge, t, other.edge_place(e, if reversed { ONE - t } else { t }));
+    let spots = [0, ONE / 2, ONE, ONE / 4].map(spot);
+    if let [Some(low), Some(centre), Some(high), Some(quarter)] = spots {
+        parts.enter(pair, OnSurface::new((side, edge), &[low, high], &[centre, quarter], true), &centre);
+    }
+    true
+}
+
+/// Adds a part of an edge that lies on the other patch; false if its ends cannot be told.
+#[inline(never)]
+fn collect_lying(pair: &Pair<'_>, line: &Line, edge: usize, part: &Lying, parts: &mut Parts) -> bool {
+    let inner = [2, 1].map(|k| part.spot(pair, line, part.range[0] + (part.range[1] - part.range[0]) / 4 * k));
+    let (Some(ends), [Some(centre), Some(quarter)]) = (part.ends(pair, line), inner) else { return false };
+    parts.enter(pair, OnSurface::new((line.side, edge), &ends, &[centre, quarter], false), &centre);
+    true
 }
 
 impl Pair<'_> {

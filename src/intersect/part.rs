@@ -448,6 +448,7 @@ impl<'r> Part<'r> {
     }
 
     /// The directions of a line's tangents.
+    #[inline(never)]
     pub(super) fn tangents(&self) -> Option<Directions> {
         let mut points = [[0; 3]; ROOM];
         let radius = self.centre(&mut points);

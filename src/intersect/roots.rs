@@ -54,6 +54,7 @@ pub(super) struct Roots {
 
 impl Lying {
     /// The spot of a parameter within the range; its foot is found in steps of a sixteenth of the way.
+    #[inline(never)]
     pub(super) fn spot(&self, pair: &Pair<'_>, line: &Line, t: i64) -> Option<Spot> {
         let (mut near, mut spot) = (self.foot, None);
         for k in 1..=16 {
@@ -65,6 +66,7 @@ impl Lying {
     }
 
     /// The ends: by halving, since the search ended within some of its last steps from them.
+    #[inline(never)]
     pub(super) fn ends(&self, pair: &Pair<'_>, line: &Line) -> Option<[Spot; 2]> {
         let [start, end] = self.range;
         let (mut low, mut high) = (self.spot(pair, line, start)?, self.spot(pair, line, end)?);
@@ -80,6 +82,7 @@ impl Lying {
 
 impl Pair<'_> {
     /// The spot of a parameter of a line, with its foot on the other patch searched from `near`; the tangent is the line's.
+    #[inline(never)]
     fn line_spot(&self, line: &Line, t: i64, near: Place) -> Option<Spot> {
         if let Some(edge) = line.edge {
             return self.edge_spot(line.side, edge, t, near);
@@ -96,6 +99,7 @@ impl Pair<'_> {
     }
 
     /// The same if it lies on the other patch, up to `slack` of its domain.
+    #[inline(never)]
     fn on_surface(&self, line: &Line, t: i64, near: Place, slack: i64) -> Option<Spot> {
         let other = 1 - (line.side & 1);
         let spot = self.line_spot(line, t, near)?;
@@ -129,6 +133,7 @@ impl Pair<'_> {
 }
 
 /// The last spot on the surface between a parameter on it and one that is not.
+#[inline(never)]
 fn last_on(pair: &Pair<'_>, line: &Line, on: Spot, mut low: i64, mut high: i64) -> Spot {
     let mut last = on;
     for _ in 0..48 {
@@ -185,6 +190,7 @@ impl Search<'_, '_, '_> {
         (self.line.parameter(spot.at[self.line.side & 1]), spot.at[self.other()])
     }
 
+    #[inline(never)]
     fn judge(&mut self, line: &mut Part<'_>, part: &mut Part<'_>, over: [Region; 2]) -> Verdict {
         if !line.boxes_meet(part) {
             return Verdict::Decided;
@@ -220,6 +226,7 @@ impl Search<'_, '_, '_> {
     }
 
     /// Finds the only point of a pair of parts; whether it, or that there is none, is now known.
+    #[inline(never)]
     fn single(&mut self, over: [Region; 2]) -> bool {
         let other = &self.pair.sheets[self.other()];
         let [low, high] = over[0].range();
@@ -249,6 +256,7 @@ impl Search<'_, '_, '_> {
     }
 
     /// The curve's point at a parameter, its foot on the surface, and the sine of the curve's angle with it there, signed.
+    #[inline(never)]
     fn slope(&self, t: i64, near: Place) -> Option<(Spot, Real)> {
         let spot = self.pair.line_spot(&self.line, t, near)?;
         let jet = self.pair.sheets[self.other()].eval(spot.at[self.other()], 1)?;
@@ -262,6 +270,7 @@ impl Search<'_, '_, '_> {
     }
 
     /// Looks at a flat pair of parts nearly parallel to each other: whether the curve lies on the surface there or touches it.
+    #[inline(never)]
     fn contact(&mut self, over: [Region; 2]) -> bool {
         let other = &self.pair.sheets[self.other()];
         let [low, high] = over[0].range();
@@ -304,6 +313,7 @@ impl Search<'_, '_, '_> {
     }
 
     /// Where the curve is parallel to the surface and meets it, between two parameters.
+    #[inline(never)]
     fn touch(&self, [mut low, mut high]: [i64; 2], foot: Place) -> Option<Spot> {
         let ((_, mut from), (_, mut to)) = (self.slope(low, foot)?, self.slope(high, foot)?);
         if from.is_negative() == to.is_negative() && !from.is_zero() && !to.is_zero() {
@@ -332,6 +342,7 @@ impl Search<'_, '_, '_> {
         None
     }
 
+    #[inline(never)]
     fn enter_touch(&mut self, spot: &Spot) {
         let found = self.split(spot);
         let close = |t: &(i64, Place)| (t.0 - found.0).abs() <= ONE >> 20;
@@ -347,6 +358,7 @@ impl Search<'_, '_, '_> {
     }
 
     /// Joins a part that lies on the surface with those it meets.
+    #[inline(never)]
     fn enter_part(&mut self, mut part: Lying) {
         for place in &mut self.roots.parts {
             if let Some(old) = place.filter(|p| p.range[0] <= part.range[1] && part.range[0] <= p.range[1]) {
@@ -361,6 +373,7 @@ impl Search<'_, '_, '_> {
     }
 
     /// Keeps a pair of parts too small to be halved.
+    #[inline(never)]
     fn give_up(&mut self, over: [Region; 2]) {
         let other = &self.pair.sheets[self.other()];
         let [low, high] = over[0].range();
@@ -375,6 +388,7 @@ impl Search<'_, '_, '_> {
     }
 
     /// What can be said of them, and of parts too short, when all else is known.
+    #[inline(never)]
     fn finish(&mut self) {
         let short = |part: &mut Lying| part.range[1] - part.range[0] < SHORTEST;
         while let Some(part) = self.roots.parts.iter_mut().find_map(|place| place.take_if(short)) {

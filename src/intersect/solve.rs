@@ -478,12 +478,22 @@ impl<'s, 'a> Solver<'s, 'a, '_> {
     /// Follows curves from where they pass between parts of the loop-free test, if none is known there.
     pub(super) fn passages(&mut self, cells: &mut Cells<'_>) -> Result<(), IntersectError> {
         let pair = self.pair;
-        let mut k = 0;
+        let (mut k, mut last) = (0, None);
         while let Some(cell) = cells.get(pair, k) {
+            // Parts and what finds points in them leave the stack before a curve is followed.
+            let mut missed = None;
             let undecided = cells::pass(pair, cell, &mut |spot| {
-                if self.is_covered(spot.point) { Ok(()) } else { self.seed(spot.at) }
+                if missed.is_none() && !self.is_covered(spot.point) {
+                    missed = Some(spot.at);
+                }
+                Ok(())
             })?;
-            self.undecided = self.undecided.saturating_add(undecided);
+            if let Some(at) = missed.filter(|at| Some(*at) != last) {
+                last = missed;
+                self.seed(at)?;
+                continue;
+            }
+            self.undecided = self.undecided.saturating_add(undecided).saturating_add(u32::from(missed.is_some()));
             k += 1;
         }
         Ok(())
