@@ -38,9 +38,10 @@
 //! | 6 | 101 400 | 262 128 | 16 368 |
 //! | 7 | 399 384 | 1 048 560 | 65 520 |
 //!
-//! A segment takes 24 bytes (two records, two links), a point 80, a curve 48, a branch 136 (on targets of 64 bits a curve 56). A
-//! transversal curve from border to border takes some 4·2^depth segments and, at the default tolerance, about a hundred points. Boxes below the levels that there
-//! is room for are made of vertices again and again: to depth − 2 the descent takes about twice the time.
+//! A segment takes 24 bytes (two records, two links), a point 80, a curve 48, a branch 136; on targets of 64 bits a curve 56. A
+//! transversal curve from border to border takes some 4·2^depth segments and, at the default tolerance, about a hundred
+//! points. Boxes below the levels that there is room for are made of vertices again and again: to depth − 2 the descent takes
+//! about twice the time.
 //!
 //! The stack does not depend on the depth, but on the degrees. As measured at `opt-level = "s"`, in bytes:
 //!
@@ -50,9 +51,9 @@
 //! | bicubic patches that coincide in a region | 18 620 | 18 352 | 18 360 | 18 076 |
 //! | patches of degrees (8, 8), rational too | 19 988 | 19 688 | 19 688 | 19 388 |
 //!
-//! With boxes to depth − 2, room for 210 segments and 136 points, and the stack, all of depth 5 takes 62 KB of RAM
-//! (`examples/fw_intersect.rs`); the image, for size on a Cortex-M4, 109 KB. On targets of 32 bits products and quotients of the
-//! wide numbers are calls, and divisions go by digits; the bits are the same as everywhere.
+//! With boxes to depth − 2, room for 210 segments and 136 points, and the stack, depth 5 takes less than 64 KB of RAM; the
+//! image, for size on a Cortex-M4, less than 128 KB of flash (`examples/fw_intersect.rs`). On targets of 32 bits operations on
+//! wide numbers are calls, which products by halves and division by digits make short; the bits are the same everywhere.
 //!
 //! # What it does not do
 //! More than two curves through one point (higher contacts), and cusps, are counted as undecided; curves end near them.
