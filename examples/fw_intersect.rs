@@ -4,8 +4,9 @@
 //! CARGO_PROFILE_RELEASE_OPT_LEVEL=s cargo run --release --target thumbv7em-none-eabihf --example fw_intersect
 //! ```
 //!
-//! For each pair it prints the curves, the points, a checksum of their bits; on a board also instructions, and the RAM that all of
-//! it took: tables and stack, painted before and looked at after. `tests/firmware_intersect.rs` compares the rest with a host.
+//! For each pair it prints the curves, the points, a checksum of their bits; on a board also instructions, and the RAM that
+//! all of it took: tables and stack, painted before and looked at after. `tests/firmware_intersect.rs` compares the rest
+//! with a host.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[path = "board/counter.rs"]

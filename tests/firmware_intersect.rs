@@ -1,5 +1,5 @@
-//! `examples/fw_intersect.rs`: pairs of surfaces on an emulated Cortex-M4 give the host's curves bit for bit, within the 64 KB of
-//! RAM of `memory.x` at depth 5, without panic, heap or soft float; what they take is in `tests/budgets.txt`.
+//! `examples/fw_intersect.rs`: pairs of surfaces on an emulated Cortex-M4 give the host's curves bit for bit, within the
+//! 64 KB of RAM of `memory.x` at depth 5, without panic, heap or soft float; what they take is in `tests/budgets.txt`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 #[path = "common/budgets.rs"]

@@ -61,7 +61,7 @@ pub(super) struct Sheet<'a> {
     pub(super) net: &'a [Homogeneous],
 }
 
-/// Calls `work` with room for two nets of so many control points, from 512 bytes to 2.6 KB each: it is what a stack mostly holds.
+/// Calls `work` with room for two nets of so many control points, from 512 bytes to 2.6 KB each: most of a stack.
 pub(super) fn in_rooms<R>(points: usize, work: impl FnOnce([&mut [Homogeneous]; 2]) -> R) -> R {
     match points {
         0..=16 => with_rooms::<16, R>(work),
