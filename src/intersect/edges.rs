@@ -10,7 +10,7 @@ use super::hermite::Piece;
 use super::line::Line;
 use super::newton::{Pair, Spot, difference};
 use super::part::{Part, Region};
-use super::roots;
+use super::roots::{self, Lying};
 use super::sheet::{ONE, Place, Sheet};
 use super::trace::{Locus, Output, Tracer};
 use crate::geometry::Point3;
@@ -163,6 +163,7 @@ pub(super) fn find(
 }
 
 /// Adds the parts of one edge, and sets its other points on the surface aside; what stays undecided.
+#[inline(never)]
 fn collect(
     pair: &Pair<'_>,
     (side, edge): (usize, usize),
@@ -173,40 +174,53 @@ fn collect(
 ) -> Result<u32, IntersectError> {
     let other = 1 - side;
     let sheet = &pair.sheets[side & 1];
-    // A degenerate edge is a point.
-    let ends = [0, ONE].map(|t| sheet.eval(sheet.edge_place(edge, t), 0).map(|j| j.point));
-    let centre = sheet.eval(sheet.edge_place(edge, ONE / 2), 0).map(|j| j.point);
-    if ends[0] == ends[1] && ends[0] == centre {
+    if is_point(sheet, edge) {
         return Ok(0);
     }
     let shared_with = (0..pair.sheets[other & 1].edge_count()).find_map(|e| {
         let reversed = |r: &bool| are_equal(sheet, edge, &pair.sheets[other & 1], e, *r);
         [false, true].into_iter().find(reversed).map(|r| (e, r))
     });
-    if let Some((e, reversed)) = shared_with {
-        let spot = |t: i64| {
-            let place = pair.sheets[other & 1].edge_place(e, if reversed { ONE - t } else { t });
-            pair.shared_spot(side, edge, t, place)
-        };
-        let spots = [0, ONE / 2, ONE, ONE / 4].map(spot);
-        if let [Some(low), Some(centre), Some(high), Some(quarter)] = spots {
-            parts.enter(pair, OnSurface::new((side, edge), [low, high], [centre, quarter], true), &centre);
-        }
+    if let Some(with) = shared_with {
+        share(pair, (side, edge), with, parts);
         return Ok(0);
     }
     let line = Line::edge(sheet, side, edge);
     let roots = roots::find(pair, line, Region::ROOT, budget, halves, &mut |spot, _| out.set_aside(spot))?;
     let mut undecided = roots.undecided.saturating_add(roots.touching);
     for part in roots.parts.into_iter().flatten() {
-        let inner = [2, 1].map(|k| part.spot(pair, &line, part.range[0] + (part.range[1] - part.range[0]) / 4 * k));
-        match (part.ends(pair, &line), inner) {
-            (Some(ends), [Some(centre), Some(quarter)]) => {
-                parts.enter(pair, OnSurface::new((side, edge), ends, [centre, quarter], false), &centre);
-            }
-            _ => undecided = undecided.saturating_add(1),
-        }
+        undecided = undecided.saturating_add(u32::from(!lie(pair, (side, edge), &line, &part, parts)));
     }
     Ok(undecided)
+}
+
+/// Whether an edge is degenerate.
+fn is_point(sheet: &Sheet<'_>, edge: usize) -> bool {
+    let [low, middle, high] = [0, ONE / 2, ONE].map(|t| sheet.eval(sheet.edge_place(edge, t), 0).map(|jet| jet.point));
+    low == middle && middle == high
+}
+
+/// Enters an edge that is one of the other patch, too.
+#[inline(never)]
+fn share(pair: &Pair<'_>, (side, edge): (usize, usize), (with, reversed): (usize, bool), parts: &mut Parts) {
+    let spot = |t: i64| {
+        let place = pair.sheets[(1 - side) & 1].edge_place(with, if reversed { ONE - t } else { t });
+        pair.shared_spot(side, edge, t, place)
+    };
+    let spots = [0, ONE / 2, ONE, ONE / 4].map(spot);
+    if let [Some(low), Some(centre), Some(high), Some(quarter)] = spots {
+        parts.enter(pair, OnSurface::new((side, edge), [low, high], [centre, quarter], true), &centre);
+    }
+}
+
+/// Enters a part that lies on the other patch; false if its ends are not found.
+#[inline(never)]
+fn lie(pair: &Pair<'_>, name: (usize, usize), line: &Line, part: &Lying, parts: &mut Parts) -> bool {
+    let [low, high] = part.range;
+    let inner = [2, 1].map(|k| part.spot(pair, line, low + (high - low) / 4 * k));
+    let (Some(ends), [Some(centre), Some(quarter)]) = (part.ends(pair, line), inner) else { return false };
+    parts.enter(pair, OnSurface::new(name, ends, [centre, quarter], false), &centre);
+    true
 }
 
 impl Pair<'_> {

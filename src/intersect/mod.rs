@@ -45,7 +45,8 @@
 //! edge takes a point too. Records to spare keep the pairs of parts of the loop-free test, one each; with fewer than those
 //! the test runs again. A transversal curve from border to border takes
 //! some 4·2^depth segments and, at the default tolerance, about a hundred points. Boxes below the levels that there is
-//! room for are made of vertices again and again: to depth − 2 the descent takes about twice the time. The stack is about 30 KB.
+//! room for are made of vertices again and again: to depth − 2 the descent takes about twice the time. The stack is about
+//! 40 KB.
 //!
 //! # What it does not do
 //! More than two curves through one point (higher contacts), and cusps, are counted as undecided; curves end near them.
