@@ -194,10 +194,7 @@ fn collect(
     out: &mut Output<'_>,
 ) -> Result<u32, IntersectError> {
     let sheet = &pair.sheets[side & 1];
-    // A degenerate edge is a point.
-    let ends = [0, ONE].map(|t| sheet.eval(sheet.edge_place(edge, t), 0).map(|j| j.point));
-    let centre = sheet.eval(sheet.edge_place(edge, ONE / 2), 0).map(|j| j.point);
-    if ends[0] == ends[1] && ends[0] == centre {
+    if is_point(sheet, edge) {
         return Ok(0);
     }
     if collect_shared(pair, (side, edge), parts) {
@@ -210,6 +207,12 @@ fn collect(
         undecided = undecided.saturating_add(u32::from(!collect_lying(pair, &line, edge, part, parts)));
     }
     Ok(undecided)
+}
+
+/// Whether an edge is degenerate.
+fn is_point(sheet: &Sheet<'_>, edge: usize) -> bool {
+    let [low, middle, high] = [0, ONE / 2, ONE].map(|t| sheet.eval(sheet.edge_place(edge, t), 0).map(|jet| jet.point));
+    low == middle && middle == high
 }
 
 /// Adds an edge that the other patch has, too; whether it does.

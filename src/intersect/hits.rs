@@ -231,7 +231,7 @@ const PAIRS: u32 = 1 << 14;
 /// [`Hits::undecided`]. A part on the surface shorter than 2^-10 of the curve comes as a touch.
 ///
 /// Points lie within 2^-36 unit of curve and surface, or 2^-46 of the longest side of their boxes if that is more. A few
-/// microseconds a crossing on a host; at most 16384 pairs of parts are looked at, what is left then is undecided. Stack: 20 KB.
+/// microseconds a crossing on a host; at most 16384 pairs of parts are looked at, what is left then is undecided. Stack: 27 KB.
 ///
 /// Sources: Sederberg and Meyers 1988 (cones), Dowell and Jarratt 1971 (touching points).
 ///

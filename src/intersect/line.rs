@@ -28,10 +28,13 @@ impl Line {
         [step(self.from[0], self.to[0]), step(self.from[1], self.to[1])]
     }
 
-    /// The parameter of a place on the line.
+    /// The parameter of a place on the line; far beyond 1 for one farther than twice the line's length.
     pub(super) fn parameter(&self, place: Place) -> i64 {
         let k = usize::from(self.from[0] == self.to[0]);
         let (size, far) = (self.to[k] - self.from[k], place[k] - self.from[k]);
+        if far.abs() / 2 > size.abs() {
+            return ONE << 8;
+        }
         let shift = PARAMETER_BITS as u32 - size.trailing_zeros().min(PARAMETER_BITS as u32);
         (far << shift) * size.signum()
     }

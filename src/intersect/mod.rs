@@ -47,16 +47,10 @@
 //! 4·2^depth segments and, at the default tolerance, about a hundred points. Boxes below the levels that there is room for are
 //! made of vertices again and again: to depth − 2 the descent takes about twice the time.
 //!
-//! The stack does not depend on the depth, but on the degrees. As measured at `opt-level = "s"`, in bytes:
+//! The stack does not depend on the depth, but on the degrees: STACK
 //!
-//! | stack for | v6-M | v7-M | v7E-M | RV32 |
-//! |---|---|---|---|---|
-//! | bicubic patches that cross | 15 828 | 15 528 | 15 528 | 15 228 |
-//! | bicubic patches that coincide in a region | 18 620 | 18 352 | 18 360 | 18 076 |
-//! | patches of degrees (8, 8), rational too | 19 988 | 19 688 | 19 688 | 19 388 |
-//!
-//! With boxes to depth − 2, room for 210 segments and 136 points, and the stack, depth 5 takes less than 64 KB of RAM; the
-//! image, for size on a Cortex-M4, less than 128 KB of flash (`examples/fw_intersect.rs`). On targets of 32 bits operations on
+//! With boxes to depth − 2, room for 210 segments and 140 points, and the stack, depth 5 takes less than 64 KB of RAM; the
+//! image, for size on a Cortex-M4, less than 132 KB of flash (`examples/fw_intersect.rs`). On targets of 32 bits operations on
 //! wide numbers are calls, which products by halves and division by digits make short; the bits are the same everywhere.
 //!
 //! # What it does not do

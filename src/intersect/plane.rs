@@ -197,7 +197,7 @@ const fn restored([a, b, c]: [i64; 3], axis: Axis) -> [i64; 3] {
 /// let (mut vertices, mut boxes) = ([[0; 3]; 200], [[[0; 3]; 2]; 200]);
 /// let (mut records, mut links) = ([0; 200], [0; 200]);
 /// let (mut points, mut curves, mut branches) = ([CurvePoint::BLANK; 40], [Curve::BLANK; 4], [Branch::BLANK; 1]);
-/// let mut buffers = || Buffers {
+/// let buffers = Buffers {
 ///     vertices: &mut vertices,
 ///     boxes: &mut boxes,
 ///     records: &mut records,
@@ -208,7 +208,7 @@ const fn restored([a, b, c]: [i64; 3], axis: Axis) -> [i64; 3] {
 /// };
 /// let options = Options::DEFAULT.with_depth(3);
 /// let height = Plane::across(Axis::Z, I16F16::from_num(10));
-/// let contour = section(roof.surface(), height, &options, buffers())?;
+/// let contour = section(roof.surface(), height, &options, buffers)?;
 /// let line = contour.curves()[0];
 /// assert_eq!(line.ends.map(|end| matches!(end, End::Edge { side: Side::A, .. })), [true; 2]);
 /// let off = |p: &CurvePoint| (p.position.x - I20F44::from_num(20)).abs() + (p.position.z - I20F44::from_num(10)).abs();
