@@ -47,7 +47,8 @@
 //! 4·2^depth segments and, at the default tolerance, about a hundred points. Boxes below the levels that there is room for are
 //! made of vertices again and again: to depth − 2 the descent takes about twice the time.
 //!
-//! The stack does not depend on the depth, but on the degrees: STACK
+//! The stack does not depend on the depth, but on the degrees. As measured at `opt-level = "s"` on a Cortex-M4: 18 KB for bicubic
+//! patches that cross, 20 KB where they coincide in a region, 27 KB for patches of degrees (8, 8); up to 2 KB more on ARMv6-M.
 //!
 //! With boxes to depth − 2, room for 210 segments and 140 points, and the stack, depth 5 takes less than 64 KB of RAM; the
 //! image, for size on a Cortex-M4, less than 132 KB of flash (`examples/fw_intersect.rs`). On targets of 32 bits operations on
