@@ -22,15 +22,15 @@ mod assembly {
     use crate::forward::Budget;
     use crate::forward::asm::class_row;
     use crate::forward::form::Form;
-    use crate::forward::residue::{Class, Classes};
+    use crate::forward::residue::Classes;
 
     #[inline(never)]
     pub(super) fn checksum(form: &Form<'_>, budget: &Budget) -> Option<i32> {
         let classes = Classes::new(form, budget, 0)?;
-        let (mut class, mut sum) = (Class::default(), 0_i32);
-        classes.each_row(&mut class, |class, row| {
-            sum = sum.wrapping_add(class_row(class, classes.place.shift(), row.count));
-        });
+        let (mut rows, mut sum) = (classes.rows(), 0_i32);
+        while let Some(row) = rows.next_row() {
+            sum = sum.wrapping_add(class_row(&rows.class, classes.place.shift(), row.count));
+        }
         Some(sum)
     }
 }
