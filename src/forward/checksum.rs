@@ -20,7 +20,7 @@ pub(super) fn checksum(form: &Form<'_>, budget: &Budget) -> i32 {
 #[cfg(any(forward_asm = "v6m", forward_asm = "rv32"))]
 mod assembly {
     use crate::forward::Budget;
-    use crate::forward::asm::class_row;
+    use crate::forward::asm::class_sum;
     use crate::forward::form::Form;
     use crate::forward::residue::Classes;
 
@@ -29,7 +29,15 @@ mod assembly {
         let classes = Classes::new(form, budget, 0)?;
         let (mut rows, mut sum) = (classes.rows(), 0_i32);
         while let Some(row) = rows.next_row() {
-            sum = sum.wrapping_add(class_row(&rows.class, classes.place.shift(), row.count));
+            let place = rows.classes.place.shift();
+            if rows.classes.is_triangle() {
+                // The rows of a class lose a point each, down to one.
+                sum = sum.wrapping_add(class_sum(&mut rows.class, place, row.count, row.count));
+                rows.next_class();
+            } else {
+                let mut class = rows.class;
+                sum = sum.wrapping_add(class_sum(&mut class, place, row.count, 1));
+            }
         }
         Some(sum)
     }

@@ -148,6 +148,11 @@ impl<'f, 'a> Classes<'f, 'a> {
         ClassRows { classes: self, class: Class::default(), next: 0, first: (0, 0), j: self.last_row() }
     }
 
+    #[cfg(any(forward_asm = "v6m", forward_asm = "rv32"))]
+    pub(super) fn is_triangle(&self) -> bool {
+        self.form.kind == Kind::Triangle
+    }
+
     /// The last i of row `j`.
     pub(super) fn last_in_row(&self, j: u32) -> u32 {
         self.form.last_in_row(j)
@@ -179,6 +184,12 @@ pub(super) struct ClassRows<'c, 'f, 'a> {
 }
 
 impl ClassRows<'_, '_, '_> {
+    /// Leaves the rest of the class.
+    #[cfg(any(forward_asm = "v6m", forward_asm = "rv32"))]
+    pub(super) fn next_class(&mut self) {
+        self.j = self.classes.last_row();
+    }
+
     /// Goes to the next row.
     #[inline(never)]
     pub(super) fn next_row(&mut self) -> Option<ClassRow> {
