@@ -151,3 +151,63 @@ impl ColumnRuns for Paired<'_, '_> {
         Some(Run { i, j, stride: 1, count: count as usize })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::forward::form::Form;
+    use crate::forward::{Lattice, Steps};
+    use crate::geometry::Point3;
+    use crate::patch::{SurfaceNet, TensorNet, TriangleNet};
+    use std::vec::Vec;
+
+    /// Both walks give every point as the walk that goes one by one does; returns which of them apply.
+    fn check(net: SurfaceNet<'_>, n: u32) -> [bool; 2] {
+        let lattice = Lattice::new(net, Steps::uniform(n).unwrap()).unwrap();
+        let form = Form::surface(net, (n, n));
+        let mut points = lattice.points();
+        let mut one_by_one: Vec<LatticePoint> = core::iter::from_fn(|| points.next()).collect();
+        let paired = Classes::new(&form, lattice.budget(), 1).and_then(Paired::new);
+        let in_rows = paired.map(|mut walk| {
+            let mut seen = Vec::new();
+            visit_runs(&mut walk, |p| seen.push(p));
+            assert!(seen == one_by_one, "{:?} n={n}", lattice.budget());
+        });
+        let classes = Classes::new(&form, lattice.budget(), 0);
+        let by_class = classes.map(|classes| {
+            let mut seen = Vec::new();
+            visit_runs(&mut ClassRuns::new(&mut classes.rows()), |p| seen.push(p));
+            let key = |p: &LatticePoint| (p.j, p.i);
+            seen.sort_by_key(key);
+            one_by_one.sort_by_key(key);
+            assert!(seen == one_by_one, "{:?} n={n}", lattice.budget());
+        });
+        [in_rows.is_some(), by_class.is_some()]
+    }
+
+    #[test]
+    fn runs_of_columns_give_the_points_of_the_plain_walk() {
+        let mut applied = [0; 2];
+        // What each place holds.
+        for (low, high) in [(0, 511), (-201, 201), (-20_001, 20_001)] {
+            let coordinate = |k: usize| low + (high - low) * (k as i32 * 7 % 5) / 4;
+            let points: Vec<_> = (0..16)
+                .map(|k: usize| {
+                    let [x, y, z] = [k, 3 * k + 1, k * k].map(|k| coordinate(k) << 16);
+                    Point3::from_bits(x, y, z)
+                })
+                .collect();
+            for degree in 1..=3 {
+                let triangle = TriangleNet::new(degree, &points[..(degree + 1) * (degree + 2) / 2]).unwrap();
+                let tensor = TensorNet::new((degree, degree), &points[..(degree + 1) * (degree + 1)]).unwrap();
+                for n in [32, 64, 128, 256] {
+                    for net in [SurfaceNet::Triangle(triangle), SurfaceNet::Tensor(tensor)] {
+                        let here = check(net, n);
+                        applied = [applied[0] + u32::from(here[0]), applied[1] + u32::from(here[1])];
+                    }
+                }
+            }
+        }
+        assert!(applied[0] > 20 && applied[1] > 20, "{applied:?}");
+    }
+}

@@ -229,7 +229,6 @@ pub(super) fn visit(classes: &Classes<'_, '_>, f: impl FnMut(LatticePoint)) {
     }
 }
 
-/// A function of its own, so that what `f` refers to is seen to be its own.
 #[inline(always)]
 fn visit_rows<const SHIFT: u32>(rows: &mut ClassRows<'_, '_, '_>, mut f: impl FnMut(LatticePoint)) {
     let stride = rows.classes.count();
