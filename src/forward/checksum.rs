@@ -20,17 +20,25 @@ pub(super) fn checksum(form: &Form<'_>, budget: &Budget) -> i32 {
 #[cfg(any(forward_asm = "v6m", forward_asm = "rv32"))]
 mod assembly {
     use crate::forward::Budget;
-    use crate::forward::asm::class_row;
+    use crate::forward::asm::class_sum;
     use crate::forward::form::Form;
-    use crate::forward::residue::{Class, Classes};
+    use crate::forward::residue::Classes;
 
     #[inline(never)]
     pub(super) fn checksum(form: &Form<'_>, budget: &Budget) -> Option<i32> {
         let classes = Classes::new(form, budget, 0)?;
-        let (mut class, mut sum) = (Class::default(), 0_i32);
-        classes.each_row(&mut class, |class, row| {
-            sum = sum.wrapping_add(class_row(class, classes.place.shift(), row.count));
-        });
+        let (mut rows, mut sum) = (classes.rows(), 0_i32);
+        while let Some(row) = rows.next_row() {
+            let place = rows.classes.place.shift();
+            if rows.classes.is_triangle() {
+                // The rows of a class lose a point each, down to one.
+                sum = sum.wrapping_add(class_sum(&mut rows.class, place, row.count, row.count));
+                rows.next_class();
+            } else {
+                let mut class = rows.class;
+                sum = sum.wrapping_add(class_sum(&mut class, place, row.count, 1));
+            }
+        }
         Some(sum)
     }
 }

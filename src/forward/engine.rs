@@ -1,12 +1,14 @@
 //! Which walker serves a plan: the only place that knows the choice of kernel and room.
 
+use super::columns::{BUFFERED, Paired, visit_runs};
 use super::fill::MULTIPLIES;
 use super::form::Form;
+use super::joined::Joined;
 use super::kernel::{Accumulate, Kernel, Mask, Residual};
 use super::lanes::LANES;
 use super::lattice::LatticePoint;
 use super::quotient::QuotientWalker;
-use super::residue::{self, Classes, Paired};
+use super::residue::{self, Classes};
 use super::run::{Buffer, Run, Runs, Sink, each};
 use super::visit::{Site, Visit};
 use super::walk::Walker;
@@ -131,9 +133,6 @@ pub(super) fn integer_bits(form: &Form<'_>) -> u32 {
 /// Whether three axes of 32-bit differences stay in registers: then points are not made in runs.
 const MANY_REGISTERS: bool = cfg!(target_arch = "riscv32");
 
-/// Whether rows are made of even and odd columns where they can: on cores without anything better.
-const PAIRS: bool = LANES == 1 && !MULTIPLIES && !MANY_REGISTERS;
-
 /// A fold: the state is threaded through the walk by value.
 struct Fold<B, F> {
     state: B,
@@ -187,7 +186,14 @@ impl Runs for Engine {
 
 /// Walks a checked form with the kernel that suits it; only that kernel's state is on the stack.
 #[inline]
-pub(super) fn walk(form: &Form<'_>, budget: &Budget, mut f: impl FnMut(LatticePoint)) {
+pub(super) fn walk(form: &Form<'_>, budget: &Budget, f: impl FnMut(LatticePoint)) {
+    if MULTIPLIES && let Some(walk) = &mut Joined::new(form, budget) {
+        return walk.for_each(f);
+    }
+    if BUFFERED && let Some(walk) = &mut Classes::new(form, budget, 1).and_then(Paired::new) {
+        return visit_runs(walk, f);
+    }
+    let mut f = f;
     let fold = Fold { state: (), f: |(), p| f(p) };
     if LANES > 1 {
         with_walker!(form, budget, |walker, Variant| walker.run(fold).state);
@@ -239,9 +245,6 @@ fn each_run(form: &Form<'_>, budget: &Budget, sink: Sink<'_>) {
         ($name:ident, $word:ty, $room:literal) => {
             rational::<$word, $room>(form, budget, sink)
         };
-    }
-    if PAIRS && let Some(mut walk) = Classes::new(form, budget, 1).and_then(Paired::new) {
-        return each(&mut walk, sink);
     }
     choose!(form, budget, run, run_quotient);
 }

@@ -3,7 +3,9 @@
 //! They are functions of their own, so that nothing else takes registers, and step before they write, so that a step is
 //! made in place.
 
-use super::run::{PAIRED, RUN};
+use super::columns::MOST;
+use super::run::RUN;
+use super::table::step_backward;
 use crate::num::Word;
 use num_traits::AsPrimitive;
 
@@ -21,8 +23,8 @@ pub(super) fn as_written() {
 /// Where the points of a run go that one coordinate at a time is made of: the first of each three entries.
 pub(super) type Room = [i32; 3 * RUN];
 
-/// The same for every other point: the first of each six entries.
-pub(super) type Column = [i32; 3 * PAIRED];
+/// Where [`lane`] puts points.
+pub(super) type Lane = [i32; 3 * MOST];
 
 #[inline(always)]
 fn step<W: Word, const R: usize>(v: &mut [W; R]) {
@@ -96,17 +98,19 @@ pub(super) fn each(out: &mut Room, fours: usize, first: i32, mut next: impl FnMu
     }
 }
 
-/// Makes `count` points of value `v[0]` with differences `v[1..]`, which go past them.
+/// Makes 4·`fours` points of a coordinate: of value `v[0]` with backward differences `v[1..]`, which go past them. They go
+/// to the first of each S entries.
 #[inline(never)]
-pub(super) fn lane(v: &mut [i32; 4], out: &mut Column, count: usize, read: impl Fn(i32) -> i32) {
-    let Some(([entry, ..], rest)) = out.as_chunks_mut::<6>().0.split_first_mut() else { return };
-    let mut here = *v;
-    *entry = read(here[0]);
-    for [entry, ..] in rest.get_mut(..count.wrapping_sub(1)).unwrap_or_default() {
-        step(&mut here);
-        *entry = read(here[0]);
+pub(super) fn lane<const S: usize>(row: &mut [i32; 4], room: &mut Lane, fours: usize, read: impl Fn(i32) -> i32) {
+    let (mut v, last) = (*row, core::hint::black_box(&row[3]));
+    room.as_chunks_mut::<S>().0.as_chunks_mut::<4>().0.iter_mut().take(fours).for_each(|entries| {
+        // Read anew: the loop is kept as it is written.
+        v[3] = *last;
+        for entry in entries.iter_mut().filter_map(|point| point.first_mut()) {
+            *entry = read(v[0]);
+            step_backward(&mut v);
+        }
         as_written();
-    }
-    step(&mut here);
-    *v = here;
+    });
+    [row[0], row[1], row[2]] = [v[0], v[1], v[2]];
 }

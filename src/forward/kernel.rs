@@ -179,9 +179,8 @@ impl<W: Word> Mask<W> {
     }
 
     /// What Δφ is multiplied by where x and e are one number of 64 bits; `None` for an N that is too small for that.
-    #[cfg(forward_asm = "v7m")]
     pub(super) fn factor(&self) -> Option<i32> {
-        (Self::JOINED && (2..32).contains(&self.shift)).then(|| self.by())
+        (2..32).contains(&self.shift).then(|| self.by())
     }
 
     #[inline(always)]

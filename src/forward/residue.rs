@@ -13,13 +13,13 @@
 //! own: R is at most [`MOST`].
 
 use super::Budget;
+use super::columns::{BUFFERED, ClassRuns, visit_runs};
 use super::engine::integer_bits;
-use super::fill::{MULTIPLIES, lane};
+use super::fill::{MULTIPLIES, as_written};
 use super::form::{Form, Kind};
 use super::kernel::Accumulate;
 use super::lattice::LatticePoint;
-use super::run::{Buffer, PAIRED, Run, Runs};
-use super::table::{Table, double_stride, each_column, step, step_r, step_s, step_triangle};
+use super::table::{Table, double_stride, each_column, step_backward, step_r, step_s, step_triangle, to_backward};
 use super::walk::Walker;
 use crate::num::Coord;
 
@@ -64,9 +64,9 @@ impl Place {
     }
 }
 
-/// The coordinate at a place, which a function of its own knows.
+/// The coordinate above so many bits.
 #[inline(always)]
-fn read<const SHIFT: u32>(v: i32) -> i32 {
+pub(super) fn read<const SHIFT: u32>(v: i32) -> i32 {
     if SHIFT == 23 { (v as u32 >> 23) as i32 } else { v >> SHIFT }
 }
 
@@ -76,12 +76,12 @@ pub(super) struct Classes<'f, 'a> {
     base: Walker<Accumulate<i64>, 4>,
     pub(super) place: Place,
     /// R.
-    bits: u32,
+    pub(super) bits: u32,
     /// What the values of `base` are shifted right by to stand at their place.
     down: i32,
 }
 
-/// The differences of a class: `[axis][b][a]`.
+/// The differences of a class: `[axis][b][a]`, backward ones along the row.
 pub(super) type Class = [Table<i32, 4>; 3];
 
 impl<'f, 'a> Classes<'f, 'a> {
@@ -128,6 +128,7 @@ impl<'f, 'a> Classes<'f, 'a> {
             for (entry, v) in class.as_flattened_mut().iter_mut().zip(t.as_flattened()) {
                 *entry = place(*v);
             }
+            class.iter_mut().for_each(to_backward);
         }
     }
 
@@ -141,23 +142,15 @@ impl<'f, 'a> Classes<'f, 'a> {
         }
     }
 
-    /// Gives every row of every class.
+    /// The rows of all classes.
     #[inline(always)]
-    pub(super) fn each_row(&self, class: &mut Class, mut f: impl FnMut(&Class, ClassRow)) {
-        let (stride, last_row) = (self.count(), self.last_row());
-        for first_row in 0..stride {
-            for i in 0..stride {
-                self.set(class, i, first_row);
-                let mut j = first_row;
-                while j <= last_row {
-                    if let Some(rest) = self.last_in_row(j).checked_sub(i) {
-                        f(class, ClassRow { i, j, stride, count: (rest >> self.bits) + 1 });
-                    }
-                    self.next_row(class);
-                    j += stride;
-                }
-            }
-        }
+    pub(super) fn rows(&self) -> ClassRows<'_, 'f, 'a> {
+        ClassRows { classes: self, class: Class::default(), next: 0, first: (0, 0), j: self.last_row() }
+    }
+
+    #[cfg(any(forward_asm = "v6m", forward_asm = "rv32"))]
+    pub(super) fn is_triangle(&self) -> bool {
+        self.form.kind == Kind::Triangle
     }
 
     /// The last i of row `j`.
@@ -170,117 +163,117 @@ impl<'f, 'a> Classes<'f, 'a> {
     }
 }
 
-/// The walk in row order where q = 2: even and odd columns each in 32 bits.
-pub(super) struct Paired<'f, 'a> {
-    classes: Classes<'f, 'a>,
-    /// `[j modulo 2][i modulo 2]`, each at its next row.
-    tables: [[Class; 2]; 2],
-    /// `[i modulo 2][axis]`.
-    row: [[[i32; 4]; 3]; 2],
-    position: (u32, u32),
+/// The points i, i + stride, … of row j.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ClassRow {
+    pub(super) i: u32,
+    pub(super) j: u32,
+    pub(super) count: u32,
 }
 
-impl<'f, 'a> Paired<'f, 'a> {
-    #[inline(always)]
-    pub(super) fn new(classes: Classes<'f, 'a>) -> Option<Self> {
-        if classes.bits != 1 {
-            return None;
-        }
-        let tables = [[Class::default(); 2]; 2];
-        let mut walk = Self { classes, tables, row: [[[0; 4]; 3]; 2], position: (0, 0) };
-        for (j, columns) in (0..).zip(&mut walk.tables) {
-            for (i, class) in (0..).zip(columns) {
-                walk.classes.set(class, i, j);
-            }
-        }
-        walk.start_row();
-        Some(walk)
-    }
-
-    /// Takes the row from the tables, which go on to the next but one.
-    fn start_row(&mut self) {
-        let [even, odd] = &mut self.tables;
-        let columns = if self.position.1 & 1 == 0 { even } else { odd };
-        for (class, row) in columns.iter_mut().zip(&mut self.row) {
-            for (row, table) in row.iter_mut().zip(class.iter()) {
-                *row = table[0];
-            }
-            self.classes.next_row(class);
-        }
-    }
+/// A walk over the rows of all classes, one class after the other.
+pub(super) struct ClassRows<'c, 'f, 'a> {
+    pub(super) classes: &'c Classes<'f, 'a>,
+    /// The differences at the start of the row.
+    pub(super) class: Class,
+    /// The class after this one.
+    next: u32,
+    /// The first point of the class.
+    first: (u32, u32),
+    j: u32,
 }
 
-impl Runs for Paired<'_, '_> {
+impl ClassRows<'_, '_, '_> {
+    /// Leaves the rest of the class.
+    #[cfg(any(forward_asm = "v6m", forward_asm = "rv32"))]
+    pub(super) fn next_class(&mut self) {
+        self.j = self.classes.last_row();
+    }
+
+    /// Goes to the next row.
     #[inline(never)]
-    fn next_run(&mut self, buffer: &mut Buffer) -> Option<Run> {
-        let (i, j) = self.position;
-        if j > self.classes.last_row() {
-            return None;
-        }
-        let left = (self.classes.last_in_row(j) + 1).wrapping_sub(i);
-        let count = left.min(PAIRED as u32);
-        let place = self.classes.place;
-        for (column, row) in self.row.iter_mut().enumerate() {
-            let here = (count as usize + 1 - column) / 2;
-            for (axis, row) in row.iter_mut().enumerate() {
-                let Some(room) = buffer.column(axis, column) else { continue };
-                match place {
-                    Place::Small => lane(row, room, here, read::<23>),
-                    Place::Screen => lane(row, room, here, read::<22>),
-                    Place::Large => lane(row, room, here, read::<16>),
+    pub(super) fn next_row(&mut self) -> Option<ClassRow> {
+        let (stride, last_row) = (self.classes.count(), self.classes.last_row());
+        loop {
+            self.j += stride;
+            if self.j <= last_row {
+                self.classes.next_row(&mut self.class);
+            } else {
+                if self.next >> (2 * self.classes.bits) != 0 {
+                    return None;
                 }
+                self.first = (self.next & (stride - 1), self.next >> self.classes.bits);
+                self.next += 1;
+                self.j = self.first.1;
+                self.classes.set(&mut self.class, self.first.0, self.first.1);
+            }
+            // The last rows of a triangle may have no point of the class.
+            if let Some(rest) = self.classes.last_in_row(self.j).checked_sub(self.first.0) {
+                return Some(ClassRow { i: self.first.0, j: self.j, count: (rest >> self.classes.bits) + 1 });
             }
         }
-        self.position.0 += count;
-        if count == left {
-            self.position = (0, j + 1);
-            self.start_row();
-        }
-        Some(Run { i, j, stride: 1, count: count as usize })
     }
 }
 
 /// Visits all points, class by class.
-#[inline]
-pub(super) fn visit(classes: &Classes<'_, '_>, mut f: impl FnMut(LatticePoint)) {
-    let mut class = Class::default();
-    classes.each_row(&mut class, |class, row| match classes.place {
-        Place::Small => visit_row::<23>(class, row, &mut f),
-        Place::Screen => visit_row::<22>(class, row, &mut f),
-        Place::Large => visit_row::<16>(class, row, &mut f),
-    });
+#[inline(always)]
+pub(super) fn visit(classes: &Classes<'_, '_>, f: impl FnMut(LatticePoint)) {
+    let rows = &mut classes.rows();
+    if BUFFERED {
+        return visit_runs(&mut ClassRuns::new(rows), f);
+    }
+    match classes.place {
+        Place::Small => visit_rows::<23>(rows, f),
+        Place::Screen => visit_rows::<22>(rows, f),
+        Place::Large => visit_rows::<16>(rows, f),
+    }
 }
 
-/// The points i, i + stride, … of row j.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct ClassRow {
-    i: u32,
-    j: u32,
-    stride: u32,
-    pub(super) count: u32,
+#[inline(always)]
+fn visit_rows<const SHIFT: u32>(rows: &mut ClassRows<'_, '_, '_>, mut f: impl FnMut(LatticePoint)) {
+    let stride = rows.classes.count();
+    while let Some(row) = rows.next_row() {
+        if MULTIPLIES {
+            visit_row_by_axes::<SHIFT>(&rows.class, row, stride, &mut f);
+        } else {
+            visit_row::<SHIFT>(&rows.class, row, stride, &mut f);
+        }
+    }
 }
 
-#[inline(never)]
-fn visit_row<const SHIFT: u32>(class: &Class, row: ClassRow, f: &mut impl FnMut(LatticePoint)) {
-    let mut rows = [class[0][0], class[1][0], class[2][0]];
-    let mut point = |i, rows: &[[i32; 4]; 3]| {
-        let [x, y, z] = [rows[0][0], rows[1][0], rows[2][0]].map(read::<SHIFT>);
-        f(LatticePoint { i, j: row.j, x, y, z });
+/// A loop that reads the last difference of each coordinate anew, and steps one after the other: then nine values and what
+/// `f` holds stay in the 12 registers that there are.
+#[inline(always)]
+fn visit_row_by_axes<const SHIFT: u32>(class: &Class, row: ClassRow, stride: u32, f: &mut impl FnMut(LatticePoint)) {
+    let [mut x, mut y, mut z] = class.each_ref().map(|table| table[0]);
+    let last = [x[3], y[3], z[3]];
+    let [last_x, last_y, last_z] = core::hint::black_box(&last);
+    let go = |v: &mut [i32; 4], last: &i32| {
+        v[3] = *last;
+        step_backward(v);
+        as_written();
     };
     let mut i = row.i;
-    if MULTIPLIES {
-        // The compiler makes more of this.
-        for _ in 1..row.count {
-            point(i, &rows);
-            i += row.stride;
-            rows.iter_mut().for_each(step);
-        }
-        return point(i, &rows);
+    for _ in 0..row.count {
+        let [x_here, y_here, z_here] = [x[0], y[0], z[0]].map(read::<SHIFT>);
+        f(LatticePoint { i, j: row.j, x: x_here, y: y_here, z: z_here });
+        as_written();
+        i += stride;
+        go(&mut x, last_x);
+        go(&mut y, last_y);
+        go(&mut z, last_z);
     }
+}
+
+/// A loop for cores that have registers for all.
+#[inline(always)]
+fn visit_row<const SHIFT: u32>(class: &Class, row: ClassRow, stride: u32, f: &mut impl FnMut(LatticePoint)) {
+    let (mut rows, mut i) = (class.each_ref().map(|table| table[0]), row.i);
     let mut go = |rows: &mut [[i32; 4]; 3]| {
-        point(i, rows);
-        i += row.stride;
-        rows.iter_mut().for_each(step);
+        let [x, y, z] = [rows[0][0], rows[1][0], rows[2][0]].map(read::<SHIFT>);
+        f(LatticePoint { i, j: row.j, x, y, z });
+        i += stride;
+        rows.iter_mut().for_each(step_backward);
     };
     for _ in 0..row.count >> 1 {
         go(&mut rows);

@@ -4,17 +4,14 @@
 //! keeps in registers, and hands it on as a [`Run`]. The code of a kernel is then in an image once, whatever closures
 //! points are given to, and each closure once, whatever kernels there are.
 
-use super::fill::{Column, Room};
+use super::fill::Room;
 use super::lattice::LatticePoint;
 
 /// The most points of a run: one more than a multiple of four, as [`fill`](super::fill) makes them.
 pub(super) const RUN: usize = 49;
 
-/// The most points of a run in pairs of columns.
-pub(super) const PAIRED: usize = RUN + 1;
-
 /// Room for the points of a run, x, y, z of each together.
-pub(super) struct Buffer([i32; 3 * PAIRED + 5]);
+pub(super) struct Buffer([i32; 3 * RUN + 2]);
 
 /// Which points are in a [`Buffer`]: those at i, i + stride, … of row j.
 #[derive(Clone, Copy, Debug)]
@@ -27,19 +24,13 @@ pub(super) struct Run {
 
 impl Buffer {
     pub(super) fn new() -> Self {
-        Self([0; 3 * PAIRED + 5])
+        Self([0; 3 * RUN + 2])
     }
 
     /// The room for one coordinate.
     #[inline(always)]
     pub(super) fn axis(&mut self, axis: usize) -> Option<&mut Room> {
         self.0.get_mut(axis..)?.first_chunk_mut()
-    }
-
-    /// The room for one coordinate of every other point.
-    #[inline(always)]
-    pub(super) fn column(&mut self, axis: usize, column: usize) -> Option<&mut Column> {
-        self.0.get_mut(axis + 3 * column..)?.first_chunk_mut()
     }
 
     /// Sets the point `at`.

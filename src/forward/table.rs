@@ -91,6 +91,24 @@ pub(crate) fn step<W: Word, const R: usize>(d: &mut [W; R]) {
     }
 }
 
+/// Forward differences to backward ones: Δ^a at i to Δ^a at i − a, whatever the first entry is.
+#[inline(always)]
+pub(super) fn to_backward<W: Word, const R: usize>(d: &mut [W; R]) {
+    for s in 1..R - 1 {
+        for a in (s..R - 1).rev() {
+            d[a] = d[a].wrapping_minus(d[a + 1]);
+        }
+    }
+}
+
+/// Moves a row of backward differences one step; the value is the first of them.
+#[inline(always)]
+pub(super) fn step_backward<W: Word, const R: usize>(d: &mut [W; R]) {
+    for a in (0..R - 1).rev() {
+        d[a] = d[a].wrapping_plus(d[a + 1]);
+    }
+}
+
 /// Differences over steps of two instead of one, in both directions: sample at 0, 2, 4, … and difference anew.
 #[inline(never)]
 pub(crate) fn double_steps<W: Word, const R: usize>(t: &mut Table<W, R>) {
