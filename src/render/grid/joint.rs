@@ -26,11 +26,11 @@ struct Bends {
     sides: [u32; 2],
 }
 
-/// Bits of components of coefficients: sums of their products with squares of 8 bits stay below 2^32.
-const BITS: u32 = 13;
+/// Bits of components of coefficients: sums of their products with squares of 14 bits stay below 2^32.
+const BITS: u32 = 15;
 
 /// Counts beyond this are not looked for.
-const MOST: u32 = 255;
+const MOST: u32 = 127;
 
 /// At least 256 times the length of (x, y), at most 2 % more, for components below 2^16: the largest of three projections.
 #[inline(always)]
@@ -85,7 +85,7 @@ pub(super) fn counts(points: &[Point3; 16], start: (u16, u16), tolerance: I16F16
     let Bends { along, exponent, sides } = Bends::of(points);
     // Eight tolerances in 2^-12, halved because coefficients are; more than 128 pixels change nothing.
     let tolerance = tolerance.to_bits().unsigned_abs().min(128 << 16) >> (2 + exponent).min(31);
-    if tolerance < 64 {
+    if tolerance < 32 {
         return None;
     }
     let largest = |way: usize| along.iter().fold(0, |most, bend| bend[way].max(most));

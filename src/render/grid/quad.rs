@@ -303,8 +303,7 @@ impl<P: Paint> Filler<'_, '_, P> {
         let (mut z, mut s) = (depth.start, level.start.wrapping_add(1 << (LEVEL_BITS - 1)));
         let width = right.wrapping_sub(left);
         let mut offset = row.wrapping_sub(top).wrapping_mul(width).wrapping_add(column.wrapping_sub(left));
-        let mut y = row;
-        for [first, last] in ends {
+        for (y, [first, last]) in (row..).zip(ends.iter()) {
             let (first, last) = (i32::from(*first), i32::from(*last));
             let range = offset.wrapping_add(first) as usize..offset.wrapping_add(last) as usize;
             if first < last
@@ -319,7 +318,6 @@ impl<P: Paint> Filler<'_, '_, P> {
             z = z.wrapping_add(depth.by_y);
             s = s.wrapping_add(level.by_y);
             offset = offset.wrapping_add(width);
-            y += 1;
         }
         true
     }
