@@ -141,20 +141,16 @@ impl<'b, P: Copy> Tile<'b, P> {
     }
 }
 
-/// Fills a buffer, 64 elements at a time: in pairs, which cores that store words anywhere store as one.
+/// Fills a buffer, 32 elements at a time: in pairs, which cores that store words anywhere store as one.
 fn fill<T: Copy>(buffer: &mut [T], value: T) {
     let pair = core::hint::black_box([value; 2]);
     let (pairs, rest) = buffer.as_chunks_mut::<2>();
     let (chunks, others) = pairs.as_chunks_mut::<16>();
-    let (twos, one) = chunks.as_chunks_mut::<2>();
-    for [first, second] in twos {
-        *first = [pair; 16];
+    for chunk in chunks {
+        *chunk = [pair; 16];
         // Keeps the compiler from making a call of this loop, to one that takes twice as long.
         core::hint::black_box(());
-        *second = [pair; 16];
-        core::hint::black_box(());
     }
-    one.as_flattened_mut().as_flattened_mut().fill(value);
     others.as_flattened_mut().fill(value);
     rest.fill(value);
 }
