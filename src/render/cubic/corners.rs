@@ -131,8 +131,9 @@ impl<'n> Corners<'n> {
 
     /// A corner of the piece: a control point.
     fn tip(&self, at: [u32; 2]) -> [i32; 3] {
-        let [a, b] = [0, 1].map(|k| if at[k] == 0 { 0 } else { self.piece.degrees[k] * self.piece.strides[k] });
-        let point = self.piece.points.get(a + b).copied().unwrap_or_default();
+        let Piece { points, degrees: [m, h], strides: [by_r, by_s], .. } = self.piece;
+        let index = if at[0] == 0 { 0 } else { m * by_r } + if at[1] == 0 { 0 } else { h * by_s };
+        let point = points.get(index).copied().unwrap_or_default();
         [point.x, point.y, point.z].map(|c| c.to_bits() >> (16 - CORNER))
     }
 
@@ -164,8 +165,12 @@ impl<'n> Corners<'n> {
             let power = (0..degree).fold(1_u32, |power, f| power.wrapping_mul(if f < k { i } else { rest }));
             let weight = power.wrapping_mul(*choices);
             let point = points.get(start + k * strides[way]).copied().unwrap_or_default();
-            let value = [point.x, point.y, point.z][axis].to_bits();
-            residual = residual.wrapping_add(i64::from(weight).wrapping_mul(i64::from(value) - border));
+            let value = match axis {
+                0 => point.x,
+                1 => point.y,
+                _ => point.z,
+            };
+            residual = residual.wrapping_add(i64::from(weight).wrapping_mul(i64::from(value.to_bits()) - border));
             whole = whole.wrapping_add(weight);
         }
         let interval = i64::from(whole) << (16 - CORNER);

@@ -131,7 +131,7 @@ impl Piece<'_> {
         if is_point {
             return self.inside(s, t, Side::Along);
         }
-        let cubics = [0, 1, 2].map(|axis| self.row(self.control(axis, s)));
+        let cubics = [self.row(self.control(0, s)), self.row(self.control(1, s)), self.row(self.control(2, s))];
         let mut row = RowTangents::default();
         self.tangents(&cubics, s, &mut row);
         let tangents = row.at(t);
