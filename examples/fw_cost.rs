@@ -28,7 +28,7 @@ use embedded_surfaces::patch::BicubicPatch;
 use embedded_surfaces::render::Facet;
 use frame::{AREA, BANDS, Picture, ROWS};
 
-/// Facets of a list: the frame has 992.
+/// Facets of a list: the frame has 867.
 const FACETS: usize = 1000;
 
 /// A whole frame, and a list.

@@ -17,11 +17,11 @@ pub(crate) const BAND: usize = (AREA.width * ROWS) as usize;
 /// Bands of a frame.
 pub(crate) const BANDS: usize = AREA.height.div_ceil(ROWS) as usize;
 
-/// The most facets of a list for a part: the upper one has 669, the lower one 366.
+/// The most facets of a list for a part: the upper one has 505, the lower one 411.
 #[allow(dead_code, reason = "`fw_cost` lists the whole frame")]
-pub(crate) const PART_FACETS: usize = 680;
+pub(crate) const PART_FACETS: usize = 520;
 /// Rows of the upper part.
-const UPPER: u32 = 6 * ROWS;
+const UPPER: u32 = 5 * ROWS;
 
 /// A frame as it is drawn.
 pub(crate) type Picture<'a> = Frame<'a, BicubicPatch, Palette<Rgb565>>;
@@ -95,7 +95,7 @@ pub(crate) fn grid(patches: &[BicubicPatch; 32], area: Area, rows: u32) -> Optio
 /// Draws the default view in bands, by facets if `GRID`; `row` gets the rows of the picture from the top. `None` if
 /// anything was refused.
 ///
-/// The two parts are frames of their own: a list of facets then takes two thirds of the room, and no pixel changes.
+/// The two parts are frames of their own: a list of facets then takes three fifths of the room, and no pixel changes.
 pub(crate) fn draw<const GRID: bool, const FACETS: usize, const LINKS: usize>(
     buffers: &mut Buffers<BAND, FACETS, LINKS>,
     mut row: impl FnMut(&[Rgb565]),

@@ -29,7 +29,9 @@ pub(crate) fn map_into(map: &Affine, out: &mut [BicubicPatch; 32]) -> Result<(),
         let point = |k: usize| mapped.get(usize::from(indices[k])).copied().unwrap_or(Point3::ORIGIN);
         let row = |k: usize| [point(k), point(k + 1), point(k + 2), point(k + 3)];
         // Mapped points are legal, so the net is.
-        *out = BicubicPatch::new([row(0), row(4), row(8), row(12)]).unwrap_or(BLANK);
+        if let Ok(patch) = BicubicPatch::new([row(0), row(4), row(8), row(12)]) {
+            *out = patch;
+        }
     }
     Ok(())
 }

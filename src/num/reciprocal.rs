@@ -22,21 +22,24 @@ pub(crate) const fn leading_zeros(value: u32) -> u32 {
     if HAS_DIVIDER { value.leading_zeros() } else { zeros_by_steps(value) }
 }
 
-const fn zeros_by_steps(mut value: u32) -> u32 {
-    let mut zeros = 0;
-    if value < 1 << 16 {
-        (value, zeros) = (value << 16, 16);
+/// The leading zeros of a byte.
+const ZEROS: [u8; 256] = {
+    let mut table = [8; 256];
+    let mut k = 1;
+    while k < 256 {
+        table[k] = (k as u8).leading_zeros() as u8;
+        k += 1;
     }
-    if value < 1 << 24 {
-        (value, zeros) = (value << 8, zeros + 8);
+    table
+};
+
+const fn zeros_by_steps(value: u32) -> u32 {
+    let (short, zeros) = if value < 1 << 16 { (value, 16) } else { (value >> 16, 0) };
+    if short < 1 << 8 {
+        zeros + 8 + ZEROS[short as usize & 255] as u32
+    } else {
+        zeros + ZEROS[(short >> 8) as usize & 255] as u32
     }
-    if value < 1 << 28 {
-        (value, zeros) = (value << 4, zeros + 4);
-    }
-    if value < 1 << 30 {
-        (value, zeros) = (value << 2, zeros + 2);
-    }
-    if value < 1 << 31 { zeros + 1 } else { zeros }
 }
 
 /// ⌊2^31/d⌋ for d of 16 bits, the first of them set; at most 2^16 − 1.
@@ -54,20 +57,23 @@ const fn invert(d: u32) -> u32 {
 }
 
 const fn invert_by_table(d: u32) -> u32 {
-    // Within 2^-8 of itself, after a step of Newton's method within 2^-15.
-    let seed = (SEEDS[(d >> 8) as usize & 127] as u32) << 8;
-    let error = (1_u32 << 31).wrapping_sub(seed.wrapping_mul(d)) as i32;
-    let mut quotient = seed.wrapping_add(((error >> 16).wrapping_mul(seed as i32) >> 15) as u32);
-    let mut rest = (1_u32 << 31).wrapping_sub(quotient.wrapping_mul(d)) as i32;
-    while rest < 0 {
-        quotient -= 1;
-        rest = rest.wrapping_add(d as i32);
-    }
-    while rest as u32 >= d {
-        quotient += 1;
-        rest = rest.wrapping_sub(d as i32);
-    }
+    let quotient = floor_by_table(d);
     if quotient < 1 << 16 { quotient } else { (1 << 16) - 1 }
+}
+
+const fn floor_by_table(d: u32) -> u32 {
+    // Within 2^-8 of itself; a step of Newton's method leaves it at most 2 too small.
+    let seed = SEEDS[(d >> 8) as usize & 127] as u32;
+    let error = (1_u32 << 31).wrapping_sub((seed << 8).wrapping_mul(d)) as i32;
+    let mut quotient = (seed << 8).wrapping_add(((error >> 8).wrapping_mul(seed as i32) >> 15) as u32);
+    let mut rest = (1_u32 << 31).wrapping_sub(quotient.wrapping_mul(d));
+    if rest >= d {
+        (quotient, rest) = (quotient + 1, rest.wrapping_sub(d));
+    }
+    if rest >= d {
+        quotient += 1;
+    }
+    quotient
 }
 
 /// 2^31 over the 16 leading bits of a positive number, rounded down, at most 2^16 − 1; and the number's leading zeros.
@@ -77,14 +83,57 @@ pub(crate) const fn reciprocal(value: u32) -> (u32, u32) {
     (invert(value << (zeros & 31) >> 16), zeros)
 }
 
+/// 2^31 over a positive number below 2^16 shifted left until its 16th bit is set, rounded down, at most 2^16; and the
+/// number's leading zeros.
+#[inline(always)]
+pub(crate) const fn exact_reciprocal(value: u32) -> (u32, u32) {
+    let zeros = leading_zeros(value);
+    let d = value << (zeros & 31) >> 16;
+    // The bit is set but for 0, which has no reciprocal: so the compiler sees that nothing is divided by it.
+    let quotient = if HAS_DIVIDER { (1_u32 << 31) / (d | 1 << 15) } else { floor_by_table(d) };
+    (quotient, zeros)
+}
+
+/// ⌊a·b/2^8⌋ modulo 2^32, for b of less than 2^23.
+#[inline(always)]
+pub(crate) const fn times_256th(a: i32, b: i32) -> i32 {
+    if HAS_DIVIDER { ((a as i64 * b as i64) >> 8) as i32 } else { times_256th_in_parts(a, b) }
+}
+
+const fn times_256th_in_parts(a: i32, b: i32) -> i32 {
+    (a >> 8).wrapping_mul(b).wrapping_add((a & 255).wrapping_mul(b) >> 8)
+}
+
 /// The upper half of a product, rounded down.
 #[inline(always)]
 pub(crate) fn high(a: i32, b: i32) -> i32 {
     if HAS_DIVIDER { ((i64::from(a) * i64::from(b)) >> 32) as i32 } else { high_in_halves(a, b) }
 }
 
+/// A cubic c0 + c1·t + c2·t² + c3·t³, given as c0, 2·c1, 4·c2, 8·c3, at a parameter in 2^-31: rounded down three times.
+#[inline(always)]
+pub(crate) fn cubic_at(c: &[i32; 4], t: i32) -> i32 {
+    if HAS_DIVIDER {
+        c[0].wrapping_add(high(c[1].wrapping_add(high(c[2].wrapping_add(high(c[3], t)), t)), t))
+    } else {
+        cubic_in_halves(c, t)
+    }
+}
+
+#[inline(never)]
+fn cubic_in_halves([a, b, c, d]: &[i32; 4], t: i32) -> i32 {
+    let value = c.wrapping_add(halves(*d, t));
+    let value = b.wrapping_add(halves(value, t));
+    a.wrapping_add(halves(value, t))
+}
+
 #[inline(never)]
 fn high_in_halves(a: i32, b: i32) -> i32 {
+    halves(a, b)
+}
+
+#[inline(always)]
+fn halves(a: i32, b: i32) -> i32 {
     let (a1, a0, b1, b0) = (a >> 16, a & 0xffff, b >> 16, b & 0xffff);
     // Opaque to the compiler, which would make a call for a product of 64 bits of the four short ones.
     let low = core::hint::black_box((a0 as u32).wrapping_mul(b0 as u32) >> 16);
@@ -173,6 +222,9 @@ mod tests {
             let (p, q) = (a as i32, b as i32);
             assert_eq!(i64::from(high(p, q)), (i64::from(p) * i64::from(q)) >> 32);
             assert_eq!(high_in_halves(p, q), high(p, q));
+            assert_eq!(times_256th_in_parts(p, q >> 9), times_256th(p, q >> 9));
+            let cubic = [next() as i32, next() as i32, p, next() as i32];
+            assert_eq!(cubic_in_halves(&cubic, q), cubic_at(&cubic, q));
             assert_eq!(multiply_in_halves(a as i32, b & 0xffff), multiply(a as i32, b & 0xffff));
             assert_eq!(i64::from(multiply(a as i32, b & 0xffff)), (i64::from(a as i32) * i64::from(b & 0xffff)) >> 17);
         }

@@ -219,7 +219,7 @@ impl<'a, S: Surface> Scene<'a, S> {
 
     /// A patch and its grid; `None` where it is not drawn by one.
     fn grid_patch(&self, index: usize) -> Option<grid::Patch<'a>> {
-        let segments = self.segments.filter(|_| self.style.lines().is_none())?;
+        let segments = self.segments.as_ref().filter(|_| self.style.lines().is_none())?;
         let (patch, topology) = (self.patches.get(index)?, self.topology.get(index)?);
         let net = patch.surface();
         let (r, s) = segments.counts(net, topology);

@@ -141,17 +141,17 @@ impl<'b, P: Copy> Tile<'b, P> {
     }
 }
 
-/// Fills a buffer: on cores that store words anywhere (of the small ones, those with atomics), 16 elements at a time.
+/// Fills a buffer, 32 elements at a time: in pairs, which cores that store words anywhere store as one.
 fn fill<T: Copy>(buffer: &mut [T], value: T) {
-    if cfg!(not(target_has_atomic = "32")) {
-        return buffer.fill(value);
-    }
-    let (chunks, rest) = buffer.as_chunks_mut::<16>();
+    let pair = core::hint::black_box([value; 2]);
+    let (pairs, rest) = buffer.as_chunks_mut::<2>();
+    let (chunks, others) = pairs.as_chunks_mut::<16>();
     for chunk in chunks {
-        *chunk = [value; 16];
+        *chunk = [pair; 16];
         // Keeps the compiler from making a call of this loop, to one that takes twice as long.
         core::hint::black_box(());
     }
+    others.as_flattened_mut().fill(value);
     rest.fill(value);
 }
 

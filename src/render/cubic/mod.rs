@@ -26,6 +26,7 @@
 mod corners;
 mod exact;
 mod run;
+mod slopes;
 mod tangents;
 
 #[cfg(all(test, feature = "std"))]
@@ -37,11 +38,12 @@ use super::pen::{Ink, Stain};
 use super::style::Style;
 use super::tile::Area;
 use crate::geometry::Point3;
-use crate::num::high;
+use crate::num::{cubic_at, high};
 use crate::patch::{Surface, SurfaceNet};
 pub(super) use corners::Corners;
 use run::{DOUBT, Depths, Line, Pixels, Points, RUN, indexed, short};
-pub(super) use tangents::RowTangents;
+pub(super) use slopes::RowSlopes;
+use tangents::RowTangents;
 
 /// The most fraction bits of values.
 const MOST_BITS: u32 = 28;
@@ -55,7 +57,7 @@ type Cubic = [i32; 4];
 /// A cubic at a parameter in 2^-31, rounded down by less than 3.
 #[inline(always)]
 fn at(c: &Cubic, t: i32) -> i32 {
-    c[0].wrapping_add(high(c[1].wrapping_add(high(c[2].wrapping_add(high(c[3], t)), t)), t))
+    cubic_at(c, t)
 }
 
 /// Parameters i/n or (i + 1/2)/n in 2^-31.

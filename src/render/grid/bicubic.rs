@@ -1,11 +1,28 @@
 //! The grid of a patch of degree 3 or less in fixed point: the same vertices as the general walk on edges, within 1/128
 //! pixel of them inside, and many times as fast.
 
-use super::super::cubic::{self, Corners, RowTangents};
+use super::super::cubic::{self, Corners, RowSlopes};
 use super::super::depth::DepthWindow;
 use super::vertices::{Lit, Normals, RowSink, Rows, SEGMENTS, Vertex, with_room};
 use crate::forward::{Form, PieceSlopes};
+use crate::geometry::Point3;
 use crate::patch::{Surface, SurfaceNet};
+
+/// A bound on the derivatives of a bicubic along all axes, in 2^-9: at least three times every difference of neighbours in
+/// the net, at most about six times the largest one.
+fn steepest(points: &[Point3; 16]) -> u32 {
+    let values = points.map(|p| [p.x, p.y, p.z].map(|c| c.to_bits() >> 7));
+    let mut all = 0;
+    for k in 0..12 {
+        for (from, to) in [(k, k + 4), (k / 3 * 4 + k % 3, k / 3 * 4 + k % 3 + 1)] {
+            for (p, q) in values[from & 15].iter().zip(&values[to & 15]) {
+                all |= (q - p) ^ ((q - p) >> 31);
+            }
+        }
+    }
+    // One more than all bits that differences have; and one unit that each may be off.
+    3 * (all.unsigned_abs() + 2)
+}
 
 /// The grid of a patch of degree 3 or less.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +45,11 @@ impl<'a> Bicubic<'a> {
     /// The grid of a net that [`suits`](Self::suits).
     pub(super) fn new(net: SurfaceNet<'a>, (r, s): (u32, u32)) -> Self {
         let is_turned = s > r;
-        let corners = Corners::new(net, (r, s), is_turned, PieceSlopes::of(net).steepest(net));
+        let steepest = match net.points().first_chunk::<16>() {
+            Some(points) if net.degrees() == (3, 3) => steepest(points),
+            _ => PieceSlopes::of(net).steepest(net),
+        };
+        let corners = Corners::new(net, (r, s), is_turned, steepest);
         Self { corners, net, counts: (r.max(s), r.min(s)), is_turned }
     }
 
@@ -57,22 +78,37 @@ impl<'a> Bicubic<'a> {
         (window, level): (DepthWindow, Option<Levels<'_>>),
     ) {
         let count = (last - first) as usize + 1;
-        let mut normals = TwoRows { corners: &self.corners, tangents: [RowTangents::default(); 2] };
+        let mut normals = TwoRows { corners: &self.corners, tangents: [RowSlopes::default(); 2] };
+        let depth = |z: i32| {
+            let depth = window.depth_of_256(z);
+            // A level by depth comes first.
+            if level.is_none() { with_room(depth) } else { depth }
+        };
+        let set = |vertex: &mut Vertex, [x, y, z]: [i32; 3]| {
+            (vertex.x, vertex.y, vertex.depth, vertex.lit) = (x, y, depth(z), Lit::Unknown);
+        };
         for j in 0..=self.counts.1 {
             let Some(out) = rows.0[(j & 1) as usize].get_mut(..count.min(SEGMENTS + 1)) else { return };
             let row = self.corners.row(j);
-            self.corners.each(&row, 0, first, out, |vertex, x| vertex.x = x);
-            self.corners.each(&row, 1, first, out, |vertex, y| vertex.y = y);
-            self.corners.each(&row, 2, first, out, |vertex: &mut Vertex, z| {
-                let depth = window.depth_of_256(z);
-                vertex.depth = with_room(depth);
-                (vertex.level, vertex.lit) = match level {
-                    Some(level) => (level(depth), Lit::Both),
-                    None => (0, Lit::Unknown),
-                };
-            });
-            if level.is_none() {
-                self.corners.tangents(&row, &mut normals.tangents[(j & 1) as usize]);
+            if self.corners.is_edge(&row) {
+                self.corners.edge(&row, first, out, set);
+            } else {
+                self.corners.each(&row, 0, first, out, |vertex, x| (vertex.x, vertex.lit) = (x, Lit::Unknown));
+                self.corners.each(&row, 1, first, out, |vertex, y| vertex.y = y);
+                self.corners.each(&row, 2, first, out, |vertex: &mut Vertex, z| vertex.depth = depth(z));
+                if let (Some(at), Some(vertex)) = (self.corners.end(&row, first), out.first_mut()) {
+                    set(vertex, at);
+                }
+                if let (Some(at), Some(vertex)) = (self.corners.end(&row, last), out.last_mut()) {
+                    set(vertex, at);
+                }
+            }
+            match level {
+                Some(level) => out.iter_mut().for_each(|vertex| {
+                    (vertex.level, vertex.lit) = (level(vertex.depth), Lit::Both);
+                    vertex.depth = with_room(vertex.depth);
+                }),
+                None => self.corners.tangents(&row, &mut normals.tangents[(j & 1) as usize]),
             }
             sink.row(rows, &normals, j, count);
         }
@@ -85,7 +121,7 @@ pub(super) type Levels<'l> = &'l dyn Fn(u16) -> u8;
 /// The tangents of rows j − 1 and j; row j stands at j mod 2.
 struct TwoRows<'c, 'a> {
     corners: &'c Corners<'a>,
-    tangents: [RowTangents; 2],
+    tangents: [RowSlopes; 2],
 }
 
 impl Normals for TwoRows<'_, '_> {

@@ -2,8 +2,9 @@
 
 use super::super::light::Light;
 use super::super::style::Style;
+use super::quad::rows;
 use super::vertices::{Lit, Normals, Row, RowSink, Rows, Vertex};
-use super::{FRACTION_BITS, Output, Quad};
+use super::{Output, Quad};
 use crate::forward::Form;
 
 /// Where levels come from.
@@ -89,16 +90,11 @@ fn minus(p: [i32; 2], q: [i32; 2]) -> [i32; 2] {
     [p[0] - q[0], p[1] - q[1]]
 }
 
-/// Whether a pixel centre of `from .. to` lies between the least and the greatest of four coordinates.
+/// Whether there are pixel centres of `from .. to` in `first .. end`.
 #[inline(always)]
-fn has_centres([a, b, c, d]: [i32; 4], from: i32, to: i32) -> bool {
-    let up = |c: i32| (c + (1 << FRACTION_BITS) - 1) >> FRACTION_BITS;
-    let (first, end) = (up(a.min(b).min(c).min(d)), up(a.max(b).max(c).max(d)));
+fn meet([first, end]: [i32; 2], from: i32, to: i32) -> bool {
     first < end && end > from && first < to
 }
-
-/// How far a plane may be from the corners of a quad: 4 times 12 levels, 4 times 1/128 of the depths.
-const WARP: (i32, i32) = (48, 1024);
 
 /// A cell between two rows.
 struct Cell<'r> {
@@ -110,14 +106,24 @@ struct Cell<'r> {
 }
 
 impl Cells<'_> {
-    /// The level of a corner on the side that is seen; `dark` is how it is lit where that is the other side.
+    /// Finds the level of a corner where it is not known.
     #[inline(always)]
-    fn level(&self, vertex: &mut Vertex, corner: usize, dark: Lit, normals: &dyn Normals, at: [u32; 2]) -> u8 {
+    fn shade(&self, vertex: &mut Vertex, corner: usize, normals: &dyn Normals, at: [u32; 2]) {
         if vertex.lit == Lit::Unknown {
             let (i, j) = (at[0] + u32::from(corner == 1 || corner == 2), at[1] - u32::from(corner < 2));
             self.lighting.shade(vertex, normals.normal(i, j));
         }
-        if vertex.lit == dark { self.lighting.light.ambient() } else { vertex.level }
+    }
+
+    /// Gives corners that look away from the light its level.
+    #[inline(always)]
+    fn darken(&self, corners: &mut [Vertex; 4], along: bool) {
+        let dark = if along { Lit::Against } else { Lit::Along };
+        for corner in corners {
+            if corner.lit == dark {
+                corner.level = self.lighting.light.ambient();
+            }
+        }
     }
 
     /// Draws a cell that may be seen, given twice the areas of its triangles abc and acd.
@@ -127,9 +133,10 @@ impl Cells<'_> {
         let abd = cross([b.x - a.x, b.y - a.y], [d.x - a.x, d.y - a.y]);
         let bcd = abc.wrapping_add(acd).wrapping_sub(abd);
         let [x_from, x_to, y_from, y_to] = self.window;
+        let rows_of_cell = rows([a.y, b.y, c.y, d.y]);
         if (abc | acd | abd) == 0
-            || !has_centres([a.y, b.y, c.y, d.y], y_from, y_to)
-            || (self.is_wide && !has_centres([a.x, b.x, c.x, d.x], x_from, x_to))
+            || !meet(rows_of_cell, y_from, y_to)
+            || (self.is_wide && !meet(rows([a.x, b.x, c.x, d.x]), x_from, x_to))
         {
             return;
         }
@@ -142,37 +149,18 @@ impl Cells<'_> {
                 self.folded(&mut cell, [abc, acd, abd, bcd]);
             };
         }
-        let along = abc < 0 || acd < 0;
-        let dark = if along { Lit::Against } else { Lit::Along };
-        let level = [
-            self.level(a, 0, dark, normals, at),
-            self.level(b, 1, dark, normals, at),
-            self.level(c, 2, dark, normals, at),
-            self.level(d, 3, dark, normals, at),
-        ];
+        self.shade(a, 0, normals, at);
+        self.shade(b, 1, normals, at);
+        self.shade(c, 2, normals, at);
+        self.shade(d, 3, normals, at);
         // Clockwise on the screen: the other way round where S_r × S_s looks at the viewer.
-        let (b, d, second, fourth) = if along { (d, b, level[3], level[1]) } else { (b, d, level[1], level[3]) };
-        let quad = Quad {
-            x: [a.x, b.x, c.x, d.x],
-            y: [a.y, b.y, c.y, d.y],
-            depth: [a.depth, b.depth, c.depth, d.depth],
-            level: [level[0], second, level[2], fourth],
-            patch: self.patch,
-        };
-        let warp = |a: i32, b: i32, c: i32, d: i32| (a - b + c - d).abs();
-        let of_levels = warp(level[0].into(), second.into(), level[2].into(), fourth.into());
-        let of_depths = warp(a.depth.into(), b.depth.into(), c.depth.into(), d.depth.into());
+        let along = (abc | acd) < 0;
+        let (second, fourth) = if along { (d, b) } else { (b, d) };
+        let mut quad =
+            Quad { corners: [*a, *second, *c, *fourth], rows: rows_of_cell, patch: self.patch, is_wide: self.is_wide };
+        self.darken(&mut quad.corners, along);
         self.facets += 1;
-        if of_levels > WARP.0 || of_depths > WARP.1 { self.halves(&quad) } else { self.output.facet(&quad) }
-    }
-
-    /// A cell that is no plane, as two triangles.
-    #[cold]
-    #[inline(never)]
-    fn halves(&mut self, quad: &Quad) {
-        self.facets += 1;
-        self.output.facet(&quad.corners([0, 1, 2, 2]));
-        self.output.facet(&quad.corners([0, 2, 3, 3]));
+        self.output.facet(&quad);
     }
 
     /// A cell that is not convex, cut along one of its diagonals.
@@ -195,17 +183,14 @@ impl Cells<'_> {
         if !self.side.shows(along) {
             return;
         }
-        let [a, b, c] = corners;
-        let order = if along { [a, c, c, b] } else { [a, b, c, c] };
-        let dark = if along { Lit::Against } else { Lit::Along };
-        let mut quad = Quad { x: [0; 4], y: [0; 4], depth: [0; 4], level: [0; 4], patch: self.patch };
-        for (k, corner) in order.into_iter().enumerate() {
-            let vertex = &mut *cell.corners[corner & 3];
-            quad.level[k] = self.level(vertex, corner, dark, cell.normals, cell.at);
-            (quad.x[k], quad.y[k], quad.depth[k]) = (vertex.x, vertex.y, vertex.depth);
+        for corner in corners {
+            self.shade(cell.corners[corner & 3], corner, cell.normals, cell.at);
         }
+        let [a, b, c] = corners.map(|corner| *cell.corners[corner & 3]);
+        let mut corners = if along { [a, c, b, b] } else { [a, b, c, c] };
+        self.darken(&mut corners, along);
         self.facets += 1;
-        self.output.facet(&quad);
+        self.output.facet(&Quad::new(corners, self.patch, self.is_wide));
     }
 }
 

@@ -5,9 +5,10 @@
 //! linear interpolation along r, then along s, neither of which enlarges the other's error. A convex quad on the screen
 //! is what its bilinear cell covers; a cell that is folded on the screen, next to a silhouette, is cut into two
 //! triangles, which may be M_rs/(4 n_r n_s) farther. The control net bounds M_rr ≤ m(m−1)·max|Δ_rr P| and so on, in the
-//! plane of the screen.
+//! plane of the screen. Of bicubic patches [`joint`] knows more.
 
 use super::super::RenderError;
+use super::joint;
 use crate::forward::Form;
 use crate::num::{Coord, I16F16};
 use crate::patch::{MAX_DEGREE, Surface, SurfaceNet, triangle_index};
@@ -46,9 +47,14 @@ impl Segments {
         let mut all = Self([1; SLOTS]);
         for (index, (patch, topology)) in patches.iter().zip(topology).enumerate() {
             let net = patch.surface();
-            let bends = Bends::of(net);
             let start = all.counts(net, topology);
-            let (r, s) = bends.counts(net.is_triangle(), start, tolerance);
+            let joint = match (net, net.points().first_chunk::<16>()) {
+                (SurfaceNet::Tensor(net), Some(points)) if net.degrees() == (3, 3) => {
+                    joint::counts(points, start, tolerance)
+                }
+                _ => None,
+            };
+            let (r, s) = joint.unwrap_or_else(|| Bends::of(net).counts(net.is_triangle(), start, tolerance));
             if r.max(s) > MOST {
                 return Err(RenderError::Segments { index, most: MOST });
             }

@@ -2,6 +2,7 @@
 
 use super::super::RenderError;
 use super::super::tile::Paint;
+use super::vertices::{Lit, Vertex};
 use super::{Filler, Output, Quad};
 
 /// A facet in a list: what [`Frame::with_facets`](crate::render::Frame::with_facets) keeps in the caller's buffer, 32
@@ -28,36 +29,30 @@ impl Facet {
     pub const EMPTY: Self = Self { first: [0; 2], more: [[0; 2]; 3], depth: [0; 4], level: [0; 4] };
 
     fn of(quad: &Quad) -> Self {
-        let Quad { x, y, depth, level, patch } = *quad;
+        let Quad { corners, patch, .. } = quad;
         let pack = |c: i32, patch: usize| (c as u32 & 0x00ff_ffff) | ((patch as u32) << 24);
-        let more = core::array::from_fn(|k| [(x[k + 1] - x[0]) as i16, (y[k + 1] - y[0]) as i16]);
-        Self { first: [pack(x[0], patch), pack(y[0], patch >> 8)], more, depth, level }
+        let [a, b, c, d] = corners;
+        Self {
+            first: [pack(a.x, *patch), pack(a.y, patch >> 8)],
+            more: [b, c, d].map(|corner| [(corner.x - a.x) as i16, (corner.y - a.y) as i16]),
+            depth: corners.each_ref().map(|corner| corner.depth),
+            level: corners.each_ref().map(|corner| corner.level),
+        }
     }
 
     fn quad(&self) -> Quad {
         let Self { first, more, depth, level } = *self;
         let [x, y] = first.map(|c| (c << 8) as i32 >> 8);
-        let [a, b, c] = more.map(|m| m.map(i32::from));
-        Quad {
-            x: [x, x + a[0], x + b[0], x + c[0]],
-            y: [y, y + a[1], y + b[1], y + c[1]],
-            depth,
-            level,
-            patch: (first[0] >> 24 | first[1] >> 24 << 8) as usize,
-        }
+        let [a, b, c] = more.map(|[dx, dy]| [x + i32::from(dx), y + i32::from(dy)]);
+        let corner = |[x, y]: [i32; 2], k: usize| Vertex { x, y, depth: depth[k], level: level[k], lit: Lit::Both };
+        let corners = [corner([x, y], 0), corner(a, 1), corner(b, 2), corner(c, 3)];
+        Quad::new(corners, (first[0] >> 24 | first[1] >> 24 << 8) as usize, true)
     }
 
     /// Its first row.
     fn start(&self) -> i32 {
         let y = (self.first[1] << 8) as i32 >> 8;
         let more = self.more.iter().map(|m| i32::from(m[1])).fold(0, i32::min);
-        (y + more + 255) >> 8
-    }
-
-    /// The row after its last one.
-    fn end(&self) -> i32 {
-        let y = (self.first[1] << 8) as i32 >> 8;
-        let more = self.more.iter().map(|m| i32::from(m[1])).fold(0, i32::max);
         (y + more + 255) >> 8
     }
 }
@@ -145,8 +140,9 @@ impl<'b> Facets<'b> {
                 break;
             };
             *from = *next;
-            filler.facet(&facet.quad());
-            if facet.end() > end {
+            let quad = facet.quad();
+            filler.facet(&quad);
+            if quad.rows[1] > end {
                 match self.next.get_mut(usize::from(last)) {
                     Some(next) => *next = index,
                     None => self.open = index,

@@ -18,6 +18,7 @@
 mod bicubic;
 mod cells;
 mod counts;
+mod joint;
 mod list;
 mod quad;
 mod vertices;
@@ -37,6 +38,8 @@ use super::plan::Plan;
 use super::style::Style;
 use super::{Light, Statistics};
 use crate::forward::{Form, Fraction, LatticeError};
+use crate::geometry::Point3;
+use crate::num::I16F16;
 use crate::patch::{Surface, SurfaceNet};
 use bicubic::Bicubic;
 use cells::{Cells, Lighting, Side};
@@ -79,7 +82,7 @@ pub(super) fn facets<S: Surface>(
     looks: (&Light, Style, DepthWindow),
     output: &mut dyn Output,
 ) -> Statistics {
-    if patch.inward.is_some_and(|inward| facing(&patch.net, inward) == Facing::Away) {
+    if patch.inward.is_some_and(|inward| may_hide(&patch.net, inward) && facing(&patch.net, inward) == Facing::Away) {
         return Statistics::default();
     }
     if Bicubic::suits::<S>(&patch.net) {
@@ -97,6 +100,18 @@ pub(super) fn facets<S: Surface>(
     strips(patch, looks, (&plan.form, false, plan.form.steps.0), output, &mut |columns, rows, cells| {
         general(&plan, patch.net, columns, (rows, cells), looks);
     })
+}
+
+/// Whether a patch is worth the question whether it faces away: not where its corners face the viewer.
+fn may_hide(net: &SurfaceNet<'_>, inward: bool) -> bool {
+    let points = net.points();
+    let (Some(a), Some([b, .., c, _, _, d])) = (points.first(), points.get(3..16)) else { return true };
+    // In whole pixels, modulo 2^32: nothing but speed depends on it.
+    let pixels = |c: I16F16| c.to_bits() >> 16;
+    let between = |from: &Point3, to: &Point3| [pixels(to.x) - pixels(from.x), pixels(to.y) - pixels(from.y)];
+    let (p, q) = (between(a, d), between(c, b));
+    let area = p[0].wrapping_mul(q[1]).wrapping_sub(p[1].wrapping_mul(q[0]));
+    inward == (area < 0)
 }
 
 /// What walks a strip: from its first to its last column.

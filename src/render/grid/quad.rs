@@ -2,83 +2,92 @@
 
 use super::super::tile::{Fragment, Paint, Tile};
 use super::Output;
-use crate::num::{multiply, reciprocal};
+use super::vertices::Vertex;
+use crate::num::{exact_reciprocal, multiply, reciprocal, times_256th};
 
 /// A convex facet, its corners clockwise on the screen; of a triangle two neighbouring corners are one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::render) struct Quad {
-    /// In 1/256 pixel, less than 2^15 apart.
-    pub(super) x: [i32; 4],
-    pub(super) y: [i32; 4],
-    pub(super) depth: [u16; 4],
-    pub(super) level: [u8; 4],
+    /// Less than 2^15 apart, their levels those of the side that is seen.
+    pub(super) corners: [Vertex; 4],
+    /// The first row of pixel centres, and the one after the last.
+    pub(super) rows: [i32; 2],
     pub(super) patch: usize,
+    /// Whether it may leave the columns of the output.
+    pub(super) is_wide: bool,
 }
 
 impl Quad {
-    /// The facet of these corners.
-    pub(super) fn corners(&self, index: [usize; 4]) -> Self {
-        let (x, y) = (index.map(|k| self.x[k & 3]), index.map(|k| self.y[k & 3]));
-        Self { x, y, depth: index.map(|k| self.depth[k & 3]), level: index.map(|k| self.level[k & 3]), ..*self }
+    /// The facet with these corners.
+    pub(super) fn new(corners: [Vertex; 4], patch: usize, is_wide: bool) -> Self {
+        let [a, b, c, d] = corners.each_ref().map(|corner| corner.y);
+        Self { corners, rows: rows([a, b, c, d]), patch, is_wide }
     }
+}
+
+/// The first row of pixel centres between the least and the greatest of four coordinates, and the one after the last.
+#[inline(always)]
+pub(super) fn rows([a, b, c, d]: [i32; 4]) -> [i32; 2] {
+    [centre(a.min(b).min(c).min(d)), centre(a.max(b).max(c).max(d))]
 }
 
 /// The first pixel centre from a coordinate on.
 #[inline(always)]
-fn centre(c: i32) -> i32 {
+pub(super) fn centre(c: i32) -> i32 {
     (c + 255) >> 8
 }
 
-/// The most rows of a facet, and of columns from its leftmost one to where its spans end.
+/// The most rows of a facet, and of columns on either side of a corner.
 const ROWS: usize = 128;
 
-/// Where the spans of a facet start and end, row by row, counted from its leftmost column.
-type Ends = [[u8; ROWS]; 2];
+/// Where the spans of a facet start and end, row by row, counted from a column that is left of all.
+type Ends = [[u8; 2]; ROWS];
 
-/// The side from (x0, y0) down to (x1, y1): its x at `row` in 2^-16 pixel, and what a row adds.
+/// The side from `top` down to `bottom`: its x at `row` in 2^-16 pixel, and what a row adds.
 ///
 /// It depends on the two vertices alone. The step errs by less than 2^-15 of itself, which is 1/128 pixel over a side of
 /// 127; its product is formed modulo 2^32, and x itself fits.
 #[inline(always)]
-fn edge([x0, y0]: [i32; 2], [x1, y1]: [i32; 2], row: i32) -> [i32; 2] {
-    let (reciprocal, zeros) = reciprocal((y1 - y0).max(1).unsigned_abs());
-    // 2^16·(x1 − x0)/(y1 − y0): factors of 15 and 16 bits.
-    let step = (x1 - x0).wrapping_mul(reciprocal as i32) >> (31 - zeros);
-    let down = (row << 8) - y0;
-    let moved = (step >> 8).wrapping_mul(down).wrapping_add((step & 255).wrapping_mul(down) >> 8);
-    [(x0 << 8).wrapping_add(moved), step]
+fn edge(top: &Vertex, bottom: &Vertex, row: i32) -> [i32; 2] {
+    let (reciprocal, zeros) = exact_reciprocal((bottom.y - top.y) as u32);
+    // 2^16·(x1 − x0)/(y1 − y0): factors of 15 and 16 bits and a sign.
+    let step = (bottom.x - top.x).wrapping_mul(reciprocal as i32) >> ((31 - zeros) & 31);
+    let moved = times_256th(step, (row << 8) - top.y);
+    [(top.x << 8).wrapping_add(moved), step]
 }
 
-/// Writes where one of the two flanks of a facet is in the rows from `row` on, going down from corner `top`; `turn` is 1
-/// or 3: to the next corner or to the one before. Returns the row after the last one.
+/// Writes where a facet's spans start and end, row by row, counted from `column`. Whether both flanks are complete.
 #[inline(never)]
-fn flank(quad: &Quad, [top, turn]: [usize; 2], row: i32, column: i32, ends: &mut [u8]) -> i32 {
-    let (mut from, mut now, mut rest) = (top & 3, row, ends);
-    for _ in 0..3 {
-        let to = (from + turn) & 3;
-        let rows = centre(quad.y[to]) - now;
-        if rows > 0 {
-            let [mut x, step] = edge([quad.x[from], quad.y[from]], [quad.x[to], quad.y[to]], now);
-            // A little less than one pixel more: shifted right it is the first centre.
-            x = x.wrapping_add(0xffff).wrapping_sub(column << 16);
-            let rows = rows.min(rest.len() as i32);
-            let Some((these, others)) = rest.split_at_mut_checked(rows as usize) else { return now };
-            for end in these {
-                *end = (x >> 16) as u8;
-                x = x.wrapping_add(step);
-                // Sides are short: unrolled, this loop would cost more.
-                core::hint::black_box(());
-            }
-            rest = others;
-            now += rows;
-            if rest.is_empty() {
-                break;
-            }
+fn flanks(quad: &Quad, column: i32, ends: &mut Ends) -> bool {
+    // A little less than one pixel more: shifted right it is the first centre.
+    let start = 0xffff_i32.wrapping_sub(column << 16);
+    let [first, end] = quad.rows;
+    let mut side = |top: &Vertex, bottom: &Vertex, [row, after]: [i32; 2], is_end: usize| {
+        let from = row.wrapping_sub(first) as usize;
+        let Some(ends) = ends.get_mut(from..after.wrapping_sub(first) as usize) else { return 0 };
+        let [x, step] = edge(top, bottom, row);
+        let mut x = x.wrapping_add(start);
+        for end in ends {
+            end[is_end] = (x >> 16) as u8;
+            x = x.wrapping_add(step);
+            // Sides are short: unrolled, this loop would cost more.
+            core::hint::black_box(());
         }
-        from = to;
-        core::hint::black_box(());
+        after.wrapping_sub(row)
+    };
+    let (mut from, mut rows) = (&quad.corners[3], 0);
+    let mut above = centre(from.y);
+    for to in &quad.corners {
+        let below = centre(to.y);
+        // Corners are clockwise: what goes down ends spans.
+        if below > above {
+            rows += side(from, to, [above, below], 1);
+        } else if below < above {
+            rows += side(to, from, [below, above], 0);
+        }
+        (from, above) = (to, below);
     }
-    now
+    rows == 2 * (end - first)
 }
 
 /// A linear function of the pixel, modulo 2^32: right wherever its value fits.
@@ -121,12 +130,11 @@ impl Base {
     }
 }
 
-/// A facet is thin where its longer side squared is more than this times twice its area. Slopes have relative errors
+/// A facet is thin where its longer diagonal squared is more than this times twice its area. Slopes have relative errors
 /// below 2^-14, and values at most 2^-8 of their range then.
 const THIN: u32 = 32;
 
 /// The index of the least and the greatest of four.
-#[inline(always)]
 fn extremes(c: &[i32; 4]) -> (usize, usize) {
     let (mut least, mut greatest) = (0, 0);
     for k in 1..4 {
@@ -142,51 +150,61 @@ fn bounds(c: &[i32; 4]) -> (i32, i32) {
     (c[0].min(c[1]).min(c[2]).min(c[3]), c[0].max(c[1]).max(c[2]).max(c[3]))
 }
 
-/// The planes of depth and level over a facet of this width and height, from the pixel `start` on: through the mean of the
-/// corners, along both diagonals as the corners say.
+/// The planes of depth and level over a facet, from the pixel `start` on: through the mean of the corners, a quarter of
+/// `sums`, along both diagonals as the corners say.
 #[inline(always)]
-fn planes(quad: &Quad, [width, height]: [i32; 2], start: [i32; 2]) -> [Plane; 2] {
-    let (x, y) = (&quad.x, &quad.y);
+fn planes(quad: &Quad, sums: [i32; 2], start: [i32; 2]) -> [Plane; 2] {
+    let [x, y] = [quad.corners.each_ref().map(|c| c.x), quad.corners.each_ref().map(|c| c.y)];
     let (p, q) = ([x[2] - x[0], y[2] - y[0]], [x[3] - x[1], y[3] - y[1]]);
     // At most 2·127²·2^16 < 2^31: the facet is convex.
     let area = p[0].wrapping_mul(q[1]).wrapping_sub(p[1].wrapping_mul(q[0])).max(0).unsigned_abs();
-    let length = width.max(height);
-    if length < 256 || length.unsigned_abs().wrapping_mul(length.unsigned_abs()) / THIN > area {
-        return lines(quad, [width, height], start);
+    let square = |d: [i32; 2]| d[0].wrapping_mul(d[0]).wrapping_add(d[1].wrapping_mul(d[1])) as u32;
+    let length = square(p).max(square(q));
+    if length < 1 << 16 || length / THIN > area {
+        return lines(quad, start);
     }
     let (reciprocal, zeros) = reciprocal(area);
     let mean = Base::new([x[0] + x[1] + x[2] + x[3], y[0] + y[1] + y[2] + y[3]], start);
-    let plane = |v: [i32; 4], bits: i32| {
+    // Factors below 2^15 and of at most 2^15: the products' difference fits. A pixel is 2^8 units; the reciprocal is 2^15
+    // times the inverse of the area shifted up by its zeros, and the product 2^17 less.
+    let slopes = |v: [i32; 4]| {
         let (dp, dq) = (v[2] - v[0], v[3] - v[1]);
-        // Factors below 2^15 and of at most 2^15: the products' difference fits. A pixel is 2^8 units; the reciprocal is
-        // 2^15 times the inverse of the area shifted up by its zeros, and the product 2^17 less.
         let cross = |a: i32, b: i32| dp.wrapping_mul(a).wrapping_sub(dq.wrapping_mul(b));
-        let slope = |n: i32| multiply(n, reciprocal);
-        let (by_x, by_y) = (slope(cross(q[1], p[1])), slope(cross(q[0], p[0])).wrapping_neg());
-        let up = bits - 22 + zeros as i32;
-        let slopes = if up <= 0 {
-            [by_x >> -up, by_y >> -up]
-        } else if bits == LEVEL_BITS || (by_x.unsigned_abs() | by_y.unsigned_abs()) >> (31 - up) == 0 {
-            // Levels, of 8 bits, cannot be as steep: no facet here is thinner than 1/32 pixel.
-            [by_x << up, by_y << up]
-        } else {
-            // Steeper than 2^31 to a pixel: constant.
-            [0; 2]
-        };
-        Plane::new(slopes, (v[0] + v[1] + v[2] + v[3]) << (bits - 2), &mean)
+        [multiply(cross(q[1], p[1]), reciprocal), multiply(cross(q[0], p[0]), reciprocal).wrapping_neg()]
     };
-    [plane(quad.depth.map(i32::from), DEPTH_BITS), plane(quad.level.map(i32::from), LEVEL_BITS)]
+    let depth = quad.corners.each_ref().map(|c| i32::from(c.depth));
+    let [by_x, by_y] = slopes(depth);
+    let up = DEPTH_BITS - 22 + zeros as i32;
+    let depth_slopes = if up <= 0 {
+        [by_x >> -up, by_y >> -up]
+    } else if ((by_x ^ (by_x >> 31)) | (by_y ^ (by_y >> 31))) as u32 >> (31 - up) == 0 {
+        [by_x << up, by_y << up]
+    } else {
+        // Steeper than 2^31 to a pixel: constant.
+        [0; 2]
+    };
+    let level = quad.corners.each_ref().map(|c| i32::from(c.level));
+    let [by_x, by_y] = slopes(level);
+    // Levels, of 8 bits, cannot be as steep: no facet here is thinner than 1/64 pixel.
+    let up = LEVEL_BITS - 22 + zeros as i32;
+    let level_slopes = if up <= 0 { [by_x >> -up, by_y >> -up] } else { [by_x << up, by_y << up] };
+    [
+        Plane::new(depth_slopes, sums[0] << (DEPTH_BITS - 2), &mean),
+        Plane::new(level_slopes, sums[1] << (LEVEL_BITS - 2), &mean),
+    ]
 }
 
 /// The planes over a thin facet, linear along x or y only, from one corner to another one; over one below a pixel,
 /// constant.
 #[cold]
 #[inline(never)]
-fn lines(quad: &Quad, [width, height]: [i32; 2], start: [i32; 2]) -> [Plane; 2] {
+fn lines(quad: &Quad, start: [i32; 2]) -> [Plane; 2] {
+    let [x, y] = [quad.corners.each_ref().map(|c| c.x), quad.corners.each_ref().map(|c| c.y)];
+    let [width, height] = [&x, &y].map(|c| bounds(c).1 - bounds(c).0);
     let along_y = height > width;
-    let (from, to) = extremes(if along_y { &quad.y } else { &quad.x });
+    let (from, to) = extremes(if along_y { &y } else { &x });
     let length = width.max(height);
-    let base = Base::new([4 * quad.x[from & 3], 4 * quad.y[from & 3]], start);
+    let base = Base::new([4 * x[from & 3], 4 * y[from & 3]], start);
     let line = |v: [i32; 4], bits: i32| {
         let slope = (i64::from(v[to & 3] - v[from & 3]) << (8 + bits)).checked_div(length.into()).unwrap_or(0);
         match i32::try_from(slope) {
@@ -196,8 +214,14 @@ fn lines(quad: &Quad, [width, height]: [i32; 2], start: [i32; 2]) -> [Plane; 2] 
             _ => Plane { by_x: 0, by_y: 0, start: (v[0] + v[1] + v[2] + v[3]) << (bits - 2) },
         }
     };
-    [line(quad.depth.map(i32::from), DEPTH_BITS), line(quad.level.map(i32::from), LEVEL_BITS)]
+    [
+        line(quad.corners.each_ref().map(|c| i32::from(c.depth)), DEPTH_BITS),
+        line(quad.corners.each_ref().map(|c| i32::from(c.level)), LEVEL_BITS),
+    ]
 }
+
+/// How far a plane may be from the corners of a quad: 4 times 12 levels, 4 times 1/128 of the depths.
+const WARP: (u32, u32) = (48, 1024);
 
 /// Fraction bits of interpolated depths, which take 15 bits, and levels.
 const DEPTH_BITS: i32 = 17;
@@ -216,7 +240,7 @@ impl<'f, 'b, P: Paint> Filler<'f, 'b, P> {
         let area = tile.area();
         let end = |start: i32, length: u32| start.saturating_add_unsigned(length);
         let window = [area.x, end(area.x, area.width), area.y, end(area.y, area.height)];
-        Self { tile, paint, window, ends: [[0; ROWS]; 2] }
+        Self { tile, paint, window, ends: [[0; 2]; ROWS] }
     }
 }
 
@@ -225,78 +249,135 @@ impl<P: Paint> Output for Filler<'_, '_, P> {
         self.window
     }
 
-    #[inline(never)]
     fn facet(&mut self, quad: &Quad) {
+        if !self.fill(quad, true) {
+            self.warped(quad);
+        }
+    }
+}
+
+impl<P: Paint> Filler<'_, '_, P> {
+    /// A facet that is no plane, as two triangles; or a triangle.
+    #[cold]
+    #[inline(never)]
+    fn warped(&mut self, quad: &Quad) {
+        let [a, b, c, d] = quad.corners;
+        if [c.x, c.y] == [d.x, d.y] {
+            self.fill(quad, false);
+            return;
+        }
+        self.fill(&Quad::new([a, b, c, c], quad.patch, quad.is_wide), false);
+        self.fill(&Quad::new([a, c, d, d], quad.patch, quad.is_wide), false);
+    }
+
+    /// Fills a facet as a plane, unless that is to be `checked` and it is too far from one: returns false then.
+    #[inline(never)]
+    fn fill(&mut self, quad: &Quad, checked: bool) -> bool {
         let [left, right, top, bottom] = self.window;
-        let rows_of = extremes(&quad.y);
-        let (low, high) = (quad.y[rows_of.0 & 3], quad.y[rows_of.1 & 3]);
-        let (mut row, end) = (centre(low).max(top), centre(high).min(bottom));
+        let [first, end] = quad.rows;
+        let (row, end) = (first.max(top), end.min(bottom));
         if row >= end {
-            return;
+            return true;
         }
-        let (x_min, x_max) = bounds(&quad.x);
-        let column = x_min >> 8;
-        let [depth, level] = planes(quad, [x_max - x_min, high - low], [column, row]);
-        let [firsts, lasts] = &mut self.ends;
-        let rows = end.wrapping_sub(row) as usize;
-        let (Some(firsts), Some(lasts)) = (firsts.get_mut(..rows), lasts.get_mut(..rows)) else { return };
-        let before = flank(quad, [rows_of.0, 3], row, column, firsts);
-        let after = flank(quad, [rows_of.0, 1], row, column, lasts);
-        if before.min(after) < end {
-            return;
+        let [a, b, c, d] = &quad.corners;
+        // Sums along both diagonals: of a plane's corners they are alike.
+        let levels = [u32::from(a.level) + u32::from(c.level), u32::from(b.level) + u32::from(d.level)];
+        let depths = [u32::from(a.depth) + u32::from(c.depth), u32::from(b.depth) + u32::from(d.depth)];
+        if checked && (levels[0].abs_diff(levels[1]) > WARP.0 || depths[0].abs_diff(depths[1]) > WARP.1) {
+            return false;
         }
-        if column < left || x_max >> 8 >= right - 1 {
-            clip(firsts, [left.wrapping_sub(column), right.wrapping_sub(column)]);
-            clip(lasts, [left.wrapping_sub(column), right.wrapping_sub(column)]);
+        let column = (a.x >> 8) - (ROWS as i32 - 1);
+        if !flanks(quad, column, &mut self.ends) {
+            return true;
         }
-        let (_, colours, depths) = self.tile.parts();
-        let Some(colours) = colours.get_mut(..depths.len()) else { return };
+        let rows = row.wrapping_sub(first) as usize..end.wrapping_sub(first) as usize;
+        let Some(ends) = self.ends.get_mut(rows) else { return true };
+        if quad.is_wide && is_beyond([a.x, b.x, c.x, d.x], left, right) {
+            clip(ends, [left.wrapping_sub(column), right.wrapping_sub(column)]);
+        }
+        let sums = [depths[0] + depths[1], levels[0] + levels[1]];
+        let [depth, level] = planes(quad, sums.map(|sum| sum as i32), [column, row]);
+        let (_, colours, stored) = self.tile.parts();
+        let Some(colours) = colours.get_mut(..stored.len()) else { return true };
         // The first column's values, rounded to the nearest level.
         let (mut z, mut s) = (depth.start, level.start.wrapping_add(1 << (LEVEL_BITS - 1)));
         let width = right.wrapping_sub(left);
         let mut offset = row.wrapping_sub(top).wrapping_mul(width).wrapping_add(column.wrapping_sub(left));
-        for (first, last) in firsts.iter().zip(lasts) {
+        for (y, [first, last]) in (row..).zip(ends.iter()) {
             let (first, last) = (i32::from(*first), i32::from(*last));
             let range = offset.wrapping_add(first) as usize..offset.wrapping_add(last) as usize;
             if first < last
                 && let Some(colours) = colours.get_mut(range.clone())
-                && let Some(depths) = depths.get_mut(range)
+                && let Some(depths) = stored.get_mut(range)
             {
                 let z = z.wrapping_add(depth.by_x.wrapping_mul(first)) as u32;
                 let s = s.wrapping_add(level.by_x.wrapping_mul(first));
-                let at = (column.wrapping_add(first), row, quad.patch);
-                let slopes = [depth.by_x, level.by_x];
-                // Levels are linear: where both ends are levels, all are.
-                let end = s.wrapping_add(level.by_x.wrapping_mul(last - 1 - first));
-                if (s | end) as u32 >> (LEVEL_BITS + 8) == 0 {
-                    span::<P, false>(self.paint, (colours, depths), at, (z, s), slopes);
-                } else {
-                    clamped(self.paint, (colours, depths), at, (z, s), slopes);
-                }
+                let at = Place { x: column.wrapping_add(first), y, patch: quad.patch };
+                run(self.paint, (colours, depths), at, (z, s), [depth.by_x, level.by_x], last - first);
             }
             z = z.wrapping_add(depth.by_y);
             s = s.wrapping_add(level.by_y);
             offset = offset.wrapping_add(width);
-            row += 1;
         }
+        true
     }
+}
+
+/// A pixel, and the patch.
+#[derive(Clone, Copy)]
+struct Place {
+    x: i32,
+    y: i32,
+    patch: usize,
+}
+
+/// Whether some columns are not from `left` to before `right`.
+#[inline(always)]
+fn is_beyond(x: [i32; 4], left: i32, right: i32) -> bool {
+    let (least, greatest) = bounds(&x);
+    least >> 8 < left || greatest >> 8 >= right - 1
 }
 
 /// Cuts spans to the columns from `left` to before `right`.
 #[cold]
 #[inline(never)]
-fn clip(ends: &mut [u8], [left, right]: [i32; 2]) {
-    for end in ends {
+fn clip(ends: &mut [[u8; 2]], [left, right]: [i32; 2]) {
+    for end in ends.as_flattened_mut() {
         *end = i32::from(*end).max(left).min(right).clamp(0, 255) as u8;
     }
 }
 
-/// Fills a run of pixels of one row from column x on.
+/// Whether the target limits a number to 8 bits in one instruction: then levels are not looked at before.
+const SATURATES: bool = cfg!(all(target_arch = "arm", target_has_atomic = "32"));
+
+/// Fills a run of pixels of one row.
+#[inline(always)]
+fn run<P: Paint>(
+    paint: &P,
+    pixels: (&mut [P::Pixel], &mut [u16]),
+    at: Place,
+    (z, s): (u32, i32),
+    [depth_by_x, level_by_x]: [i32; 2],
+    length: i32,
+) {
+    if SATURATES {
+        return span::<P, true>(paint, pixels, at, (z, s), [depth_by_x, level_by_x]);
+    }
+    // Levels are linear: where both ends are levels, all are.
+    let end = s.wrapping_add(level_by_x.wrapping_mul(length - 1));
+    if (s | end) as u32 >> (LEVEL_BITS + 8) == 0 {
+        span::<P, false>(paint, pixels, at, (z, s << 8), [depth_by_x, level_by_x << 8]);
+    } else {
+        clamped(paint, pixels, at, (z, s), [depth_by_x, level_by_x]);
+    }
+}
+
+/// `CLAMP`: the plane may leave the levels; else levels come with 8 more fraction bits.
 #[inline(always)]
 fn span<P: Paint, const CLAMP: bool>(
     paint: &P,
     (colours, depths): (&mut [P::Pixel], &mut [u16]),
-    (mut x, y, patch): (i32, i32, usize),
+    Place { mut x, y, patch }: Place,
     (mut z, mut s): (u32, i32),
     [depth_by_x, level_by_x]: [i32; 2],
 ) {
@@ -305,8 +386,9 @@ fn span<P: Paint, const CLAMP: bool>(
         // The lowest bit is no depth yet: it decides nothing, for what is stored is even, or larger than any.
         if depth < u32::from(*stored) {
             *stored = depth as u16 & !1;
-            let shade = if CLAMP { (s >> LEVEL_BITS).clamp(0, 255) } else { s >> LEVEL_BITS };
-            *colour = paint.pixel(Fragment { x, y, patch, shade: shade as u8 });
+            let shade =
+                if CLAMP { (s >> LEVEL_BITS).clamp(0, 255) as u8 } else { (s as u32 >> (LEVEL_BITS + 8)) as u8 };
+            *colour = paint.pixel(Fragment { x, y, patch, shade });
         } else {
             // Runs are short: this keeps the compiler from unrolling the loop, which costs more than it saves.
             core::hint::black_box(());
@@ -320,12 +402,6 @@ fn span<P: Paint, const CLAMP: bool>(
 /// The same, where a plane leaves the levels.
 #[cold]
 #[inline(never)]
-fn clamped<P: Paint>(
-    paint: &P,
-    pixels: (&mut [P::Pixel], &mut [u16]),
-    at: (i32, i32, usize),
-    start: (u32, i32),
-    slopes: [i32; 2],
-) {
+fn clamped<P: Paint>(paint: &P, pixels: (&mut [P::Pixel], &mut [u16]), at: Place, start: (u32, i32), slopes: [i32; 2]) {
     span::<P, true>(paint, pixels, at, start, slopes);
 }
