@@ -28,7 +28,7 @@ pub use word::Word;
 
 pub(crate) use coord::{bits_i16f16, bits_i32f32};
 pub(crate) use real::Real;
-pub(crate) use reciprocal::{high, multiply, reciprocal, reciprocal_root};
+pub(crate) use reciprocal::{high, leading_zeros, multiply, reciprocal, reciprocal_root};
 pub(crate) use round::{BINOMIAL, SURJECTIONS, div_half_up, div_up, shift_half_up, shift_up, sqrt_up};
 pub(crate) use text::{Decimal, binary32};
 pub(crate) use trig::arctangent;

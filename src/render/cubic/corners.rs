@@ -1,19 +1,21 @@
 //! Corners of a grid: ⌊256·S⌋, exact on edges, within 1/128 pixel inside.
 //!
-//! On an edge, and at the ends of a row, values come from [`at`](super::at), less than 16 units off, and [`exact`](super::exact)
+//! On an edge, and at the ends of a row, values come from [`value_at`], less than 16 units off, and [`exact`](super::exact)
 //! decides where that is not enough: patches on both sides of an edge get equal bits. Inside, rows are walked by differences.
 
 use super::super::light::Side;
 use super::run::Line;
+use super::steps::value_at;
 use super::tangents::{RowTangents, normal_of};
-use super::{Piece, at, scaled};
+use super::{Piece, RowCubic};
 use crate::patch::SurfaceNet;
 
 /// Fraction bits of corners.
 const CORNER: u32 = 8;
 
-/// What values may be off.
+/// What values may be off; and those of a net that was cut.
 const DOUBT: i32 = 16;
+const DOUBT_IF_CUT: i32 = 64;
 
 /// The grid of a piece that [`suits`](super::suits).
 #[derive(Clone, Copy, Debug)]
@@ -22,8 +24,10 @@ pub(in crate::render) struct Corners<'n> {
     /// The whole corner units of the origin, and the rest in 2^-F.
     base: [i32; 3],
     fraction: [i32; 3],
-    /// F less [`CORNER`].
+    /// F less [`CORNER`], at least 1: values are doubled so many times before.
     shift: u32,
+    doublings: u32,
+    doubt: i32,
 }
 
 /// A row of corners.
@@ -31,7 +35,7 @@ pub(in crate::render) struct Corners<'n> {
 pub(in crate::render) struct CornerRow {
     j: u32,
     s: i32,
-    cubics: [[i32; 4]; 3],
+    cubics: [RowCubic; 3],
     /// The values at both ends.
     ends: [[i32; 2]; 3],
     is_edge: bool,
@@ -42,12 +46,15 @@ impl<'n> Corners<'n> {
     pub(in crate::render) fn new(net: SurfaceNet<'n>, steps: (u32, u32), is_turned: bool, steepest: u32) -> Self {
         let piece = Piece::new(net, steps, u8::from(is_turned), steepest);
         let start = piece.origin.map(|c| c - (1 << 15));
-        let (up, down) = (piece.bits.saturating_sub(16), 16_u32.saturating_sub(piece.bits));
+        let (up, less) = (piece.bits.saturating_sub(16), 16_u32.saturating_sub(piece.bits));
+        let doubt = if piece.is_cut { DOUBT_IF_CUT } else { DOUBT };
         Self {
             piece,
             base: start.map(|c| c >> CORNER),
-            fraction: start.map(|c| (c & 255) >> down << up),
+            fraction: start.map(|c| (c & 255) >> less << up),
             shift: piece.bits.saturating_sub(CORNER).clamp(1, 31),
+            doublings: (CORNER + 1).saturating_sub(piece.bits),
+            doubt,
         }
     }
 
@@ -57,9 +64,10 @@ impl<'n> Corners<'n> {
         let s = self.piece.across.half(2 * j);
         let (mut cubics, mut ends) = ([[0; 4]; 3], [[0; 2]; 3]);
         for axis in 0..3 {
-            let control = self.piece.control(axis, s);
-            ends[axis] = [control[0], control[self.piece.degrees[0] & 3]];
-            cubics[axis] = self.piece.row(control);
+            let cubic = self.piece.row(axis, s);
+            let [start, slope, bend, last] = cubic;
+            ends[axis] = [start, start.wrapping_add(slope >> 2).wrapping_add(bend >> 1).wrapping_add(last >> 1)];
+            cubics[axis] = cubic;
         }
         CornerRow { j, s, cubics, ends, is_edge: j == 0 || j == self.piece.across.steps }
     }
@@ -77,14 +85,14 @@ impl<'n> Corners<'n> {
         let (base, fraction) = (self.base[axis], self.fraction[axis]);
         let along = &self.piece.along;
         if row.is_edge {
-            let cubic = scaled(row.cubics[axis]);
+            let cubic = &row.cubics[axis];
             for (i, out) in (first..).zip(out.iter_mut()) {
-                set(out, self.exact(axis, [i, row.j], at(&cubic, along.half(2 * i))));
+                set(out, self.exact(axis, [i, row.j], value_at(cubic, along.half(2 * i))));
             }
         } else {
-            let mut line: Line = self.piece.line(&row.cubics[axis], along.half(2 * first), fraction);
+            let mut line: Line = self.piece.differences.line(&row.cubics[axis], along.half(2 * first), fraction);
             for out in out.iter_mut() {
-                set(out, (line.value >> self.shift).wrapping_add(base));
+                set(out, (line.value << self.doublings >> self.shift).wrapping_add(base));
                 line.step();
                 core::hint::black_box(());
             }
@@ -102,9 +110,9 @@ impl<'n> Corners<'n> {
     #[inline(always)]
     fn exact(&self, axis: usize, at: [u32; 2], value: i32) -> i32 {
         let value = value.wrapping_add(self.fraction[axis]);
-        let near = (value >> self.shift).wrapping_add(self.base[axis]);
-        let rest = value.wrapping_add(DOUBT) & ((1 << self.shift) - 1);
-        if rest < 2 * DOUBT || self.shift < 6 { self.settle(axis, at, near) } else { near }
+        let near = (value << self.doublings >> self.shift).wrapping_add(self.base[axis]);
+        let rest = value.wrapping_add(self.doubt) & ((1 << self.shift) - 1);
+        if rest < 2 * self.doubt || self.shift < 6 { self.settle(axis, at, near) } else { near }
     }
 
     #[cold]

@@ -4,7 +4,7 @@
 use super::super::brush::Shading;
 use super::super::depth::DepthWindow;
 use super::super::light::{Light, Side};
-use super::super::pen::{Ink, Stain};
+use super::super::pen::{Ink, Seen, Stain};
 use super::super::style::Style;
 use super::super::tile::Area;
 use super::{Piece, Target};
@@ -23,6 +23,10 @@ struct Record(Pixels);
 impl Stain for Record {
     fn stain(&mut self, _: usize, [x, y]: [i32; 2], _: u8) {
         self.0.insert((x, y));
+    }
+
+    fn stain_all(&mut self, area: &Area, points: &Seen<'_>) {
+        points.each(area, |index, at, shade| self.stain(index, at, shade));
     }
 }
 
