@@ -87,7 +87,8 @@ impl<S: Surface> Filling<'_, '_, S> {
     #[inline(never)]
     fn cubic(&mut self, net: SurfaceNet<'_>, sampling: Sampling, slopes: &PieceSlopes) {
         let turn = slopes.turn(false, sampling.centres);
-        let piece = cubic::Piece::new(net, (sampling.steps.r(), sampling.steps.s()), turn, slopes.steepest(net));
+        let mut piece = cubic::Piece::blank(net, (sampling.steps.r(), sampling.steps.s()), turn);
+        piece.set_up(slopes.steepest(net));
         let side = self.side(turn == 1);
         let mut target = cubic::Target {
             area: self.drawing.area,

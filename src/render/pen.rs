@@ -49,7 +49,7 @@ pub(super) trait Stain {
 pub(super) struct Seen<'r> {
     /// The index in the tile of each point of the run.
     pub(super) index: &'r [u32],
-    /// Those that are seen, and their levels.
+    /// Those that are seen, by how many of the run come after, and their levels.
     pub(super) seen: &'r [u8],
     pub(super) levels: &'r [u8],
 }
@@ -59,7 +59,8 @@ impl Seen<'_> {
     #[inline(always)]
     pub(super) fn each(&self, area: &Area, mut f: impl FnMut(usize, [i32; 2], u8)) {
         for (k, level) in self.seen.iter().zip(self.levels) {
-            if let Some(index) = self.index.get(usize::from(*k)) {
+            let k = self.index.len().wrapping_sub(1).wrapping_sub(usize::from(*k));
+            if let Some(index) = self.index.get(k) {
                 let row = index.checked_div(area.width).unwrap_or(0);
                 let column = index.wrapping_sub(row.wrapping_mul(area.width));
                 f(*index as usize, [area.x.wrapping_add_unsigned(column), area.y.wrapping_add_unsigned(row)], *level);

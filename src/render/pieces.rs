@@ -10,7 +10,7 @@ use crate::forward::{Estimate, PieceSlopes, Sampling};
 use crate::geometry::Point3;
 use crate::num::I16F16;
 use crate::patch::{MAX_DEGREE, Surface, SurfaceNet};
-use crate::subdivide::{Cut, Direction, Half, Quarter, Source, part_net};
+use crate::subdivide::{Cut, Direction, Half, Quarter, Source, are_near, part_net};
 
 /// The most points of a polynomial tensor-product piece: with more, points are wasted where a piece is short; with fewer,
 /// setting up pieces costs more than the points that it saves.
@@ -124,6 +124,7 @@ fn with_room<S: Surface, const LEN: usize, const WEIGHTS: usize, const SLOTS: us
         depth: 0,
         deepest: SLOTS - 1,
         front: 0,
+        is_near: are_near(net.points()),
     };
     tree.walk::<S>(pieces);
 }
@@ -164,6 +165,8 @@ struct Tree<'n, 's> {
     deepest: usize,
     /// A bit for each depth: whether the piece there is known to face the viewer.
     front: u16,
+    /// Whether the points of the root, and so those of its parts, [are near](are_near).
+    is_near: bool,
 }
 
 impl Tree<'_, '_> {
@@ -240,8 +243,9 @@ impl Tree<'_, '_> {
         let Some(level) = self.depth.checked_sub(1) else { return false };
         let Some(part) = self.path.get(level).and_then(|(split, part)| split.part(*part)) else { return false };
         self.depth = level;
+        let is_near = self.is_near;
         let (parent, slot, weight_slot) = self.current();
-        source(parent, level).1.cut_of::<S>(part, slot, weight_slot);
+        source(parent, level).1.known_near(is_near).cut_of::<S>(part, slot, weight_slot);
         self.depth = level + 1;
         true
     }

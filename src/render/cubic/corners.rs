@@ -44,7 +44,8 @@ pub(in crate::render) struct CornerRow {
 impl<'n> Corners<'n> {
     /// The grid of a net with so many segments; rows run along s if `is_turned`.
     pub(in crate::render) fn new(net: SurfaceNet<'n>, steps: (u32, u32), is_turned: bool, steepest: u32) -> Self {
-        let piece = Piece::new(net, steps, u8::from(is_turned), steepest);
+        let mut piece = Piece::blank(net, steps, u8::from(is_turned));
+        piece.set_up(steepest);
         let start = piece.origin.map(|c| c - (1 << 15));
         let (up, less) = (piece.bits.saturating_sub(16), 16_u32.saturating_sub(piece.bits));
         let doubt = if piece.is_cut { DOUBT_IF_CUT } else { DOUBT };

@@ -42,7 +42,7 @@ use crate::num::high;
 use crate::patch::{Surface, SurfaceNet};
 pub(super) use corners::Corners;
 use row::{Row, Units};
-use run::{DOUBT, Depths, Pixels, Points, RUN, Raster};
+use run::{DOUBT, Depths, Line, Pixels, Points, RUN, Raster};
 use steps::{Differences, Parameters};
 pub(super) use tangents::RowTangents;
 
@@ -130,21 +130,20 @@ pub(super) fn suits<S: Surface>(net: &SurfaceNet<'_>) -> bool {
 }
 
 impl<'n> Piece<'n> {
-    /// A piece that [`suits`]; `steepest` is the largest bound on a derivative, in 2^-9.
-    #[inline(never)]
-    pub(super) fn new(net: SurfaceNet<'n>, steps: (u32, u32), turn: u8, steepest: u32) -> Self {
+    /// A piece that [`suits`], to be [set up](Self::set_up) where it stays.
+    #[inline(always)]
+    pub(super) fn blank(net: SurfaceNet<'n>, steps: (u32, u32), turn: u8) -> Self {
         let (m, h) = net.degrees();
-        let (r, s) = (Parameters::new(steps.0), Parameters::new(steps.1));
         let is_turned = turn == 1;
         let (degrees, strides) = if is_turned { ([h, m], [1, h + 1]) } else { ([m, h], [h + 1, 1]) };
-        let (along, across) = if is_turned { (s, r) } else { (r, s) };
-        let points = net.points();
-        let mut piece = Self {
-            points,
+        let (along, across) = if is_turned { (steps.1, steps.0) } else { steps };
+        let along = Parameters::new(along);
+        Self {
+            points: net.points(),
             degrees,
             strides,
             along,
-            across,
+            across: Parameters::new(across),
             differences: Differences::new(&along),
             bits: 0,
             is_cut: false,
@@ -153,55 +152,29 @@ impl<'n> Piece<'n> {
             rows: [[[0; 4]; 4]; 3],
             depths: [0; 2],
             doublings: [0; 2],
-        };
-        // 768·E·2^(16 − down) is below 2^31.
-        let down = 16_u32.saturating_sub(steepest.leading_zeros());
-        match points.first_chunk::<16>() {
-            Some(points) => piece.set_up(points, down),
-            None => {
-                let mut room = [Point3::ORIGIN; 16];
-                room.iter_mut().zip(points).for_each(|(to, from)| *to = *from);
-                piece.set_up(&room, down);
-            }
         }
-        piece
     }
 
-    #[inline(always)]
-    fn set_up(&mut self, points: &[Point3; 16], down: u32) {
-        let (by_row, by_column) = (&FACTORS[self.degrees[0] & 3], &FACTORS[self.degrees[1] & 3]);
+    /// Finds the coefficients; `steepest` is the largest bound on a derivative, in 2^-9.
+    #[inline(never)]
+    pub(super) fn set_up(&mut self, steepest: u32) {
+        // 768·E·2^(16 − down) is below 2^31.
+        let down = 16_u32.saturating_sub(steepest.leading_zeros());
         let mut sizes = [0; 4];
         for axis in 0..3 {
-            let bits = |a: usize, b: usize| {
-                let p = &points[(a * self.strides[0] + b * self.strides[1]) & 15];
-                match axis {
-                    0 => p.x.to_bits(),
-                    1 => p.y.to_bits(),
-                    _ => p.z.to_bits(),
-                }
+            let mut values = [0; 16];
+            match axis {
+                0 => self.gather(|p| p.x.to_bits() >> down, &mut values),
+                1 => self.gather(|p| p.y.to_bits() >> down, &mut values),
+                _ => self.gather(|p| p.z.to_bits() >> down, &mut values),
             };
-            self.origin[axis] = bits(0, 0) + (1 << 15);
-            let start = bits(0, 0) >> down;
-            let mut rows = [[0; 4]; 4];
-            for b in 0..4 {
-                let value = |a: usize| (bits(a, b) >> down).wrapping_sub(start);
-                let values = [value(0), value(1), value(2), value(3)];
-                if axis == 2 && b <= self.degrees[1] {
-                    let [least, most] = &mut self.depths;
-                    for value in values.iter().take(self.degrees[0] + 1) {
-                        (*least, *most) = ((*least).min(*value), (*most).max(*value));
-                    }
-                }
-                let [b0, b1, b2, b3] = power(values, by_row);
-                let by = [b0, b1.wrapping_shl(2), b2.wrapping_shl(1), b3.wrapping_shl(1)];
-                rows.iter_mut().zip(by).for_each(|(row, value)| row[b] = value);
+            self.set_axis(axis, &values, &mut sizes);
+            if axis == 2 {
+                self.depths = self.range(&values);
             }
-            for (row, values) in self.rows[axis].iter_mut().zip(rows) {
-                *row = scaled(power(values, by_column));
-            }
-            for (size, row) in sizes.iter_mut().zip(&self.rows[axis]) {
-                *size |= row.iter().fold(0, |all, c| all | magnitude(*c));
-            }
+        }
+        if let Some(p) = self.points.first() {
+            self.origin = p.to_array().map(|c| c.to_bits() + (1 << 15));
         }
         let [b0, b1, b2, b3] = sizes;
         let zeros = |all: i32| (all as u32 | 1).leading_zeros() as i32;
@@ -209,10 +182,58 @@ impl<'n> Piece<'n> {
         let more = spare.min(if down > 0 { MOST_CUT_MORE } else { MOST_MORE });
         self.is_cut = down > 0 || more < 0;
         self.bits = (16 - down as i32 + more).max(0) as u32;
-        self.take(down, more);
         // Values of coefficients are less than twice as large, those of derivatives less than three times.
         let doublings = |all: i32| (zeros(all) - more - 4).clamp(0, 31) as u32;
         self.doublings = [doublings(b1 >> 3 | b2 | b3 << 2), doublings(b0 >> 2 | b1 >> 3 | b2 >> 1 | b3)];
+        self.take(down, more);
+    }
+
+    /// One coordinate of the net, from that of its first point on: four values along a row after the other.
+    #[inline(always)]
+    fn gather(&self, coordinate: impl Fn(&Point3) -> i32, out: &mut [i32; 16]) {
+        let start = self.points.first().map_or(0, &coordinate);
+        let value = |p: &Point3| coordinate(p).wrapping_sub(start);
+        match self.points.first_chunk::<16>() {
+            Some(points) if self.strides[0] == 1 => {
+                out.iter_mut().zip(points).for_each(|(out, p)| *out = value(p));
+            }
+            Some(points) => {
+                for (k, p) in points.iter().enumerate() {
+                    out[(k >> 2 | k << 2) & 15] = value(p);
+                }
+            }
+            None => {
+                for (b, row) in out.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+                    for (a, out) in row.iter_mut().enumerate() {
+                        // What there is not has no weight.
+                        *out = self.points.get(a * self.strides[0] + b * self.strides[1]).map_or(0, value);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Finds the coefficients of rows along an axis, and what bits they have.
+    #[inline(never)]
+    fn set_axis(&mut self, axis: usize, values: &[i32; 16], sizes: &mut [i32; 4]) {
+        let (by_row, by_column) = (&FACTORS[self.degrees[0] & 3], &FACTORS[self.degrees[1] & 3]);
+        let mut columns = [[0; 4]; 4];
+        for (b, values) in values.as_chunks::<4>().0.iter().enumerate() {
+            let [b0, b1, b2, b3] = power(*values, by_row);
+            let by = [b0, b1.wrapping_shl(2), b2.wrapping_shl(1), b3.wrapping_shl(1)];
+            columns.iter_mut().zip(by).for_each(|(column, value)| column[b & 3] = value);
+        }
+        for ((row, column), size) in self.rows[axis].iter_mut().zip(&columns).zip(sizes) {
+            *row = scaled(power(*column, by_column));
+            *size |= row.iter().fold(0, |all, c| all | magnitude(*c));
+        }
+    }
+
+    /// The least and the greatest of the values that there are.
+    fn range(&self, values: &[i32; 16]) -> [i32; 2] {
+        let rows = values.as_chunks::<4>().0.iter().take(self.degrees[1] + 1);
+        rows.flat_map(|row| row.iter().take(self.degrees[0] + 1))
+            .fold([0; 2], |[least, most], value| [least.min(*value), most.max(*value)])
     }
 
     /// Brings values to their fraction bits: `more` than they have.
@@ -235,6 +256,15 @@ impl<'n> Piece<'n> {
         [at(a, s), at(b, s), at(c, s), at(d, s)]
     }
 
+    /// The walks along a row from parameter `t` on, of what pixels are made from: x and y plus [`DOUBT`], and z.
+    #[inline(never)]
+    fn lines(&self, row: &[RowCubic; 3], t: i32, out: &mut [Line; 3]) {
+        let more = [DOUBT, DOUBT, 0];
+        for (((out, row), fraction), more) in out.iter_mut().zip(row).zip(&self.fraction).zip(more) {
+            *out = self.differences.line(row, t, fraction.wrapping_add_unsigned(more));
+        }
+    }
+
     /// Draws the lattice of corners, or that of cell centres.
     pub(super) fn draw(&self, centred: bool, target: &mut Target<'_>) {
         let half = u32::from(centred);
@@ -247,6 +277,7 @@ impl<'n> Piece<'n> {
             raster: Raster { starts, width: area.width, height: area.height },
         };
         let sides = [Range::of(starts[0], area.width, self, 0), Range::of(starts[1], area.height, self, 1)];
+        let start = self.along.half(half);
         let (mut points, mut rows) = (Points::new(), 0_u32);
         let mut row = Row {
             piece: self,
@@ -274,11 +305,15 @@ impl<'n> Piece<'n> {
             row.cubics = [x, y, self.row(2, s)];
             (row.j, row.s, row.is_known) = (j, s, false);
             row.clip = [by_column == Place::Across, by_row == Place::Across];
-            let mut first = 0;
-            while first <= last {
+            let (mut first, mut t) = (0, start);
+            loop {
                 let count = (last + 1 - first).min(RUN as u32);
-                row.run(first, count as usize, &units, &mut points, target);
+                row.run((first, t), count as usize, &units, &mut points, target);
                 first += count;
+                if first > last {
+                    break;
+                }
+                t = self.along.half(2 * first + half);
             }
         }
         *target.points += u64::from(rows) * (u64::from(last) + 1);

@@ -2,7 +2,7 @@
 
 use super::super::pen::{Ink, Seen};
 use super::super::style::Style;
-use super::run::{DOUBT, Depths, Line, Pixels, Points, Raster, hide, test};
+use super::run::{Depths, Line, Pixels, Points, Raster, hide, test};
 use super::tangents::RowTangents;
 use super::{Piece, RowCubic, Target};
 
@@ -29,11 +29,11 @@ pub(super) struct Units {
 }
 
 impl Row<'_, '_> {
-    /// Draws `count` points from number `first` on.
+    /// Draws `count` points from one on: its number and its parameter.
     #[inline(never)]
     pub(super) fn run(
         &mut self,
-        first: u32,
+        (first, t): (u32, i32),
         count: usize,
         units: &Units,
         points: &mut Points,
@@ -41,13 +41,13 @@ impl Row<'_, '_> {
     ) {
         let Units { pixels, raster, .. } = units;
         let Points { index, depths, seen, levels } = points;
-        let t = self.piece.along.half(2 * first + self.half);
-        let y = self.line(1, t, DOUBT);
+        let mut lines = [Line::default(); 3];
+        self.piece.lines(&self.cubics, t, &mut lines);
+        let [x, y, z] = &mut lines;
         let index = index.get_mut(..count).unwrap_or_default();
-        if !pixels.rows(&y, index) {
-            pixels.settle(&y, index, &mut |k, near| self.settle(1, first + k as u32, near));
+        if !pixels.rows(y, index) {
+            pixels.settle(y, index, &mut |k, near| self.settle(1, first + k as u32, near));
         }
-        let (mut x, mut z) = (self.line(0, t, DOUBT), self.line(2, t, 0));
         let (mut first, mut index) = (first, index);
         if self.clip[1] {
             let (from, to) = raster.trim(index);
@@ -63,12 +63,12 @@ impl Row<'_, '_> {
         }
         if self.clip[0] {
             let settle = &mut |k: usize, near| self.settle(0, first + k as u32, near);
-            pixels.clipped_columns(&x, raster, index, settle);
-        } else if !pixels.columns(&x, raster, index) {
-            pixels.settle(&x, index, &mut |k, near| self.settle(0, first + k as u32, near));
+            pixels.clipped_columns(x, raster, index, settle);
+        } else if !pixels.columns(x, raster, index) {
+            pixels.settle(x, index, &mut |k, near| self.settle(0, first + k as u32, near));
         }
         let depths = depths.get_mut(..index.len()).unwrap_or_default();
-        units.depths.of(&z, depths);
+        units.depths.of(z, depths);
         if target.ink != Ink::Fill {
             return hide(index, depths, target.depth);
         }
@@ -77,12 +77,6 @@ impl Row<'_, '_> {
             let (seen, levels) = (seen.get(..count), levels.get_mut(..count));
             self.colour(first, (index, seen.unwrap_or_default()), levels.unwrap_or_default(), target);
         }
-    }
-
-    #[inline(always)]
-    fn line(&self, axis: usize, t: i32, more: u32) -> Line {
-        let fraction = self.piece.fraction[axis].wrapping_add_unsigned(more);
-        self.piece.differences.line(&self.cubics[axis], t, fraction)
     }
 
     /// Gives the points that were seen their colours.
@@ -101,7 +95,8 @@ impl Row<'_, '_> {
         }
         if shading.style == Style::Shaded {
             // Most scenes: without asking for the style at each point.
-            self.light(first, seen, levels, shading.light, target.side);
+            let last = first + (index.len() as u32).wrapping_sub(1);
+            self.light(last, seen, levels, shading.light, target.side);
         } else {
             self.shade(first, (index, seen), levels, target);
         }
@@ -112,9 +107,10 @@ impl Row<'_, '_> {
     #[inline(never)]
     fn shade(&self, first: u32, (index, seen): (&[u32], &[u8]), levels: &mut [u8], target: &Target<'_>) {
         for (k, level) in seen.iter().zip(levels) {
-            let index = index.get(usize::from(*k)).map_or(0, |index| *index as usize);
+            let k = index.len().wrapping_sub(1).wrapping_sub(usize::from(*k));
+            let index = index.get(k).map_or(0, |index| *index as usize);
             let depth = target.depth.get(index).map_or(0, |stored| stored >> 1);
-            *level = target.shading.level(depth, || self.normal(first + u32::from(*k), target.side));
+            *level = target.shading.level(depth, || self.normal(first + k as u32, target.side));
         }
     }
 

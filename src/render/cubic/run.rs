@@ -29,7 +29,7 @@ impl Points {
 }
 
 /// A walk along a row: a value in 2^-F, its differences in 2^-(F + [`MORE`]).
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Line {
     pub(super) value: i32,
     pub(super) first: i32,
@@ -238,18 +238,20 @@ fn in_pairs<T>(all: &mut [T], mut f: impl FnMut(&mut T)) {
     rest.iter_mut().for_each(f);
 }
 
-/// Stores those depths of a run that are nearest; writes down which points were seen, of neighbours on one pixel the last,
-/// and returns how many.
+/// Stores those depths of a run that are nearest; writes down which points were seen, by how many come after, of neighbours on
+/// one pixel the last, and returns how many.
 #[inline(never)]
 pub(super) fn test(index: &[u32], depths: &[u16], stored: &mut [u16], seen: &mut [u8; RUN]) -> usize {
     let (mut count, mut last) = (0, u32::MAX);
-    for (k, (index, depth)) in (0_u8..).zip(index.iter().zip(depths)) {
+    let mut left = index.len().min(depths.len());
+    for (index, depth) in index.iter().zip(depths) {
+        left = left.wrapping_sub(1);
         if let Some(stored) = stored.get_mut(*index as usize)
             && is_nearest(stored, *depth)
         {
             count += usize::from(*index != last);
             last = *index;
-            seen[count.wrapping_sub(1) & (RUN - 1)] = k;
+            seen[count.wrapping_sub(1) & (RUN - 1)] = left as u8;
         }
         core::hint::black_box(());
     }

@@ -79,21 +79,21 @@ impl Row<'_, '_> {
         (2 * i + self.half).wrapping_mul(self.piece.along.near()) as i32
     }
 
-    /// The levels of points, whose numbers are counted from `first` on, in a light.
-    pub(super) fn light(&self, first: u32, seen: &[u8], levels: &mut [u8], light: &Light, side: Side) {
+    /// The levels of points, whose numbers are counted from `last` down, in a light.
+    pub(super) fn light(&self, last: u32, seen: &[u8], levels: &mut [u8], light: &Light, side: Side) {
         if side == Side::Viewer {
-            self.light_on::<true>(first, seen, levels, light, side);
+            self.light_on::<true>(last, seen, levels, light, side);
         } else {
-            self.light_on::<false>(first, seen, levels, light, side);
+            self.light_on::<false>(last, seen, levels, light, side);
         }
     }
 
     #[inline(never)]
-    fn light_on<const VIEWER: bool>(&self, first: u32, seen: &[u8], levels: &mut [u8], light: &Light, side: Side) {
-        let (start, step) = (self.parameter(first), 2 * self.piece.along.near());
+    fn light_on<const VIEWER: bool>(&self, last: u32, seen: &[u8], levels: &mut [u8], light: &Light, side: Side) {
+        let (end, step) = (self.parameter(last), 2 * self.piece.along.near());
         let lamp = if side == Side::Against { light.reversed() } else { *light };
         for (k, out) in seen.iter().zip(levels) {
-            let t = start.wrapping_add_unsigned(u32::from(*k).wrapping_mul(step));
+            let t = end.wrapping_sub_unsigned(u32::from(*k).wrapping_mul(step));
             *out = match cross::<VIEWER>(self.tangents.at(t)) {
                 // Turning a normal turns the sign of its product with the light, and nothing else.
                 Some((cross, shift)) => lamp.level_of_turned(cross.map(|c| c >> shift), VIEWER && cross[2] > 0),

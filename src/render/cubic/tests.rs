@@ -35,7 +35,8 @@ fn drawn(net: SurfaceNet<'_>, steps: (u32, u32), turn: u8, centred: bool, area: 
     let (mut record, mut points) = (Record(Pixels::new()), 0);
     let mut depth = vec![u16::MAX; area.pixels()];
     let shading = Shading { light: &Light::default(), style: Style::Flat, window: DepthWindow::of(0, 0) };
-    let piece = Piece::new(net, steps, turn, PieceSlopes::of(net).steepest(net));
+    let mut piece = Piece::blank(net, steps, turn);
+    piece.set_up(PieceSlopes::of(net).steepest(net));
     piece.draw(
         centred,
         &mut Target {
