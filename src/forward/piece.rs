@@ -300,11 +300,12 @@ fn each_bicubic_pair(points: &[Point3; 16], mut f: impl FnMut(i32, i32)) {
         for (by_s, row) in by_s.iter_mut().zip(values.as_chunks::<4>().0) {
             *by_s = elevated(*row);
         }
-        // Corners first: there slopes are often largest.
+        // Corners first: there slopes are often largest. Masked, so that no check is left at any level of optimisation.
         for j in [0, 3, 1, 2] {
-            let by_r = elevated([values[j], values[4 + j], values[8 + j], values[12 + j]]);
+            let value = |i: usize| values[(4 * i + j) & 15];
+            let by_r = elevated([value(0), value(1), value(2), value(3)]);
             for i in [0, 3, 1, 2] {
-                f(by_r[i], by_s[i][j]);
+                f(by_r[i & 3], by_s[i & 3][j & 3]);
             }
         }
     }

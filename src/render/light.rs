@@ -114,7 +114,7 @@ impl Light {
         if along <= 0 {
             return self.ambient;
         }
-        self.ambient.saturating_add(self.above(along as u32, (x * x + y * y + z * z) as u32))
+        self.ambient.saturating_add(self.above(along as u32, (x * x) as u32 + (y * y) as u32 + (z * z) as u32))
     }
 
     /// What a normal adds to the ambient level, from its product with the direction and its square.

@@ -160,19 +160,14 @@ impl<'n> Piece<'n> {
     pub(super) fn set_up(&mut self, steepest: u32) {
         // 768·E·2^(16 − down) is below 2^31.
         let down = 16_u32.saturating_sub(steepest.leading_zeros());
-        let mut sizes = [0; 4];
-        for axis in 0..3 {
-            let mut values = [0; 16];
-            match axis {
-                0 => self.gather(|p| p.x.to_bits() >> down, &mut values),
-                1 => self.gather(|p| p.y.to_bits() >> down, &mut values),
-                _ => self.gather(|p| p.z.to_bits() >> down, &mut values),
-            };
-            self.set_axis(axis, &values, &mut sizes);
-            if axis == 2 {
-                self.depths = self.range(&values);
-            }
-        }
+        let (mut sizes, mut values) = ([0; 4], [0; 16]);
+        self.gather(|p| p.x.to_bits() >> down, &mut values);
+        self.set_axis(&values, 0, &mut sizes);
+        self.gather(|p| p.y.to_bits() >> down, &mut values);
+        self.set_axis(&values, 1, &mut sizes);
+        self.gather(|p| p.z.to_bits() >> down, &mut values);
+        self.set_axis(&values, 2, &mut sizes);
+        self.depths = self.range(&values);
         if let Some(p) = self.points.first() {
             self.origin = p.to_array().map(|c| c.to_bits() + (1 << 15));
         }
@@ -215,7 +210,7 @@ impl<'n> Piece<'n> {
 
     /// Finds the coefficients of rows along an axis, and what bits they have.
     #[inline(never)]
-    fn set_axis(&mut self, axis: usize, values: &[i32; 16], sizes: &mut [i32; 4]) {
+    fn set_axis(&mut self, values: &[i32; 16], axis: usize, sizes: &mut [i32; 4]) {
         let (by_row, by_column) = (&FACTORS[self.degrees[0] & 3], &FACTORS[self.degrees[1] & 3]);
         let mut columns = [[0; 4]; 4];
         for (b, values) in values.as_chunks::<4>().0.iter().enumerate() {
@@ -223,7 +218,9 @@ impl<'n> Piece<'n> {
             let by = [b0, b1.wrapping_shl(2), b2.wrapping_shl(1), b3.wrapping_shl(1)];
             columns.iter_mut().zip(by).for_each(|(column, value)| column[b & 3] = value);
         }
-        for ((row, column), size) in self.rows[axis].iter_mut().zip(&columns).zip(sizes) {
+        // Not by an index: out of line it would be checked.
+        let rows = self.rows.get_mut(axis).into_iter().flatten();
+        for ((row, column), size) in rows.zip(&columns).zip(sizes) {
             *row = scaled(power(*column, by_column));
             *size |= row.iter().fold(0, |all, c| all | magnitude(*c));
         }
@@ -252,8 +249,8 @@ impl<'n> Piece<'n> {
     /// A coordinate along the row at `s`. Out of line: coefficients are not copied to the stack.
     #[inline(never)]
     fn row(&self, axis: usize, s: i32) -> RowCubic {
-        let [a, b, c, d] = &self.rows[axis];
-        [at(a, s), at(b, s), at(c, s), at(d, s)]
+        // Not by an index: out of line it would be checked.
+        self.rows.get(axis).map_or([0; 4], |[a, b, c, d]| [at(a, s), at(b, s), at(c, s), at(d, s)])
     }
 
     /// The walks along a row from parameter `t` on, of what pixels are made from: x and y plus [`DOUBT`], and z.
