@@ -1,6 +1,7 @@
 //! Pictures pulled band by band.
 
 use super::grid::{Facet, Facets, Filler};
+use super::notes::Notes;
 use super::tile::{Area, Paint, Tile};
 use super::{RenderError, Scene};
 use crate::patch::Surface;
@@ -59,6 +60,8 @@ impl<'b, P> Band<'b, P> {
 
 /// A picture of a scene, drawn band by band from the top as the caller pulls.
 ///
+/// It remembers what is done with pieces that reach into the next band: 0.5 KB.
+///
 /// ```
 /// use embedded_surfaces::patch::BilinearPatch;
 /// use embedded_surfaces::render::{Area, Fragment, Frame, Light, Scene, Style};
@@ -82,6 +85,7 @@ pub struct Frame<'a, S, P: Paint> {
     rows: u32,
     next: u32,
     statistics: Statistics,
+    notes: Notes,
     /// The list, and the row that it starts at.
     facets: Option<(Facets<'a>, u32)>,
 }
@@ -105,7 +109,8 @@ impl<'a, S: Surface, P: Paint> Frame<'a, S, P> {
             return Err(RenderError::Area { width: area.width, height: rows });
         }
         let rows = rows.min(area.height);
-        Ok(Self { scene, paint, background, area, rows, next: 0, statistics: Statistics::default(), facets: None })
+        let (statistics, notes) = (Statistics::default(), Notes::EMPTY);
+        Ok(Self { scene, paint, background, area, rows, next: 0, statistics, notes, facets: None })
     }
 
     /// The same picture, the facets of the bands to come made once instead of anew for each band that they meet: for bands of
@@ -181,7 +186,10 @@ impl<'a, S: Surface, P: Paint> Frame<'a, S, P> {
                     let end = area.y.saturating_add_unsigned(area.height);
                     facets.draw(band, end, &mut Filler::new(&mut tile, self.paint));
                 }
-                None => self.statistics += self.scene.draw(&mut tile, self.paint),
+                None => {
+                    self.notes.turn();
+                    self.statistics += self.scene.draw_noted(&mut tile, self.paint, Some(&mut self.notes));
+                }
             }
             &*colour
         };

@@ -79,6 +79,7 @@ mod frame;
 mod grid;
 mod light;
 mod lines;
+mod notes;
 mod pen;
 mod pieces;
 mod plan;

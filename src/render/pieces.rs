@@ -47,13 +47,54 @@ pub(super) enum Wanted {
     Front,
 }
 
+/// What is done with a piece.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    /// It is not looked at, nor are its parts.
+    Leave,
+    Split(Split),
+    /// By this lattice, of which a polynomial tensor product of degree 3 or less is turned so; the steepest derivative of
+    /// that is at most so many 2^-9.
+    Draw { sampling: Sampling, turn: u8, steepest: u32 },
+}
+
+/// What is done with a piece, and whether it faces the viewer everywhere, as far as is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Verdict {
+    pub(super) way: Way,
+    pub(super) is_front: bool,
+}
+
+impl Verdict {
+    /// How much steeper than this a piece is makes a difference, and not how much less.
+    pub(super) const SLOW: u32 = 1 << 16;
+}
+
+/// Where a piece is that is met by a band.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Reach {
+    /// Whether it was met by the band before.
+    pub(super) is_old: bool,
+    /// Whether the next one meets it.
+    pub(super) goes_on: bool,
+}
+
 /// What is done with pieces.
 pub(super) trait Pieces {
-    /// Whether a piece is looked at at all; `is_front`: it is a part of one that faces the viewer everywhere.
-    fn wants(&mut self, piece: SurfaceNet<'_>, is_front: bool) -> Wanted;
+    /// Where a piece is; `None` where it is not met.
+    fn reach(&mut self, piece: SurfaceNet<'_>) -> Option<Reach>;
 
-    /// A piece that is not split any further, and room for as many points as it has.
-    fn piece(&mut self, piece: SurfaceNet<'_>, sampling: Sampling, slopes: &PieceSlopes, room: &mut [Point3]);
+    /// What the notes of a frame say of the next piece that is old.
+    fn recall(&mut self) -> Option<Verdict>;
+
+    /// Notes what is done with the next piece that goes on.
+    fn keep(&mut self, verdict: &Verdict);
+
+    /// Whether a piece is looked at at all.
+    fn wants(&mut self, piece: SurfaceNet<'_>) -> Wanted;
+
+    /// A piece that is not split any further, [a way to draw it](Way::Draw), and room for as many points as it has.
+    fn piece(&mut self, piece: SurfaceNet<'_>, way: (Sampling, u8, u32), room: &mut [Point3]);
 
     /// Called when a piece is split.
     fn split(&mut self);
@@ -131,7 +172,7 @@ fn with_room<S: Surface, const LEN: usize, const WEIGHTS: usize, const SLOTS: us
 
 /// How a piece is split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Split {
+pub(super) enum Split {
     R,
     S,
     Squares,
@@ -186,15 +227,39 @@ impl Tree<'_, '_> {
 
     /// Draws the current piece, or says how it is split.
     fn visit<S: Surface>(&mut self, pieces: &mut dyn Pieces) -> Option<Split> {
-        let (depth, deepest) = (self.depth, self.deepest);
-        // That of the piece above stands one bit lower.
-        let (own, is_front) = (2_u16 << depth, self.front >> depth & 1 == 1);
-        let wanted = pieces.wants(self.current().0, is_front);
-        self.front = if wanted == Wanted::Front { self.front | own } else { self.front & !own };
-        if wanted == Wanted::No {
-            return None;
+        let reach = pieces.reach(self.current().0)?;
+        let noted = if reach.is_old { pieces.recall() } else { None };
+        let verdict = match noted {
+            Some(verdict) => verdict,
+            None => self.judge::<S>(pieces),
+        };
+        if reach.goes_on {
+            pieces.keep(&verdict);
         }
+        // That of the piece above stands one bit lower.
+        let own = 2_u16 << self.depth;
+        self.front = if verdict.is_front { self.front | own } else { self.front & !own };
+        match verdict.way {
+            Way::Leave => None,
+            Way::Split(split) => Some(split),
+            Way::Draw { sampling, turn, steepest } => {
+                let (piece, slot, _) = self.current();
+                pieces.piece(piece, (sampling, turn, steepest), slot);
+                None
+            }
+        }
+    }
+
+    /// What is to be done with the current piece.
+    fn judge<S: Surface>(&mut self, pieces: &mut dyn Pieces) -> Verdict {
+        let (depth, deepest) = (self.depth, self.deepest);
+        let is_front = self.front >> depth & 1 == 1;
         let (piece, slot, weight_slot) = self.current();
+        let wanted = if is_front { Wanted::Front } else { pieces.wants(piece) };
+        let verdict = |way: Way| Verdict { way, is_front: wanted == Wanted::Front };
+        if wanted == Wanted::No {
+            return verdict(Way::Leave);
+        }
         let slopes = PieceSlopes::of(piece);
         let (triangles, rational) =
             (S::SHAPE.triangles && piece.is_triangle(), S::SHAPE.rational && piece.weights().is_some());
@@ -202,7 +267,7 @@ impl Tree<'_, '_> {
         // Up to degree 3 any legal net fits 128 bits: (n_r·n_s)^3·2^7·(2K+1) with n below 2^19.
         let fits_always = direct && (S::SHAPE.degree <= 3 || degree(&piece) <= 3);
         if depth < deepest && fits_always && slopes.least_points() > LARGEST {
-            return Some(halves_of(&slopes));
+            return verdict(Way::Split(halves_of(&slopes)));
         }
         let sampling = slopes.sampling::<S>(piece, true);
         let split = if depth == deepest {
@@ -215,10 +280,13 @@ impl Tree<'_, '_> {
         } else {
             split_that_pays::<S>(source(piece, depth), sampling, slot, weight_slot)
         };
-        if split.is_none() {
-            pieces.piece(piece, sampling, &slopes, slot);
-        }
-        split
+        verdict(match split {
+            Some(split) => Way::Split(split),
+            None if fits_always => {
+                Way::Draw { sampling, turn: slopes.turn(false, sampling.centres), steepest: slopes.steepest(piece) }
+            }
+            None => Way::Draw { sampling, turn: 0, steepest: 0 },
+        })
     }
 
     /// The current piece, and the slots after it.
