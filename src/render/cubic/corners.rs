@@ -1,7 +1,8 @@
 //! Corners of a grid: ⌊256·S⌋, exact on edges, within 1/128 pixel inside.
 //!
 //! On an edge, and at the ends of a row, values come from [`value_at`], less than 16 units off, and [`exact`](super::exact)
-//! decides where that is not enough: patches on both sides of an edge get equal bits. Inside, rows are walked by differences.
+//! decides where that is not enough: patches on both sides of an edge get equal bits. Inside, rows are walked by differences,
+//! which takes 16 fraction bits; wild nets, which have fewer, are exact there too.
 
 use super::super::light::Side;
 use super::run::Line;
@@ -38,7 +39,7 @@ pub(in crate::render) struct CornerRow {
     cubics: [RowCubic; 3],
     /// The values at both ends.
     ends: [[i32; 2]; 3],
-    is_edge: bool,
+    is_exact: bool,
 }
 
 impl<'n> Corners<'n> {
@@ -70,7 +71,8 @@ impl<'n> Corners<'n> {
             ends[axis] = [start, start.wrapping_add(slope >> 2).wrapping_add(bend >> 1).wrapping_add(last >> 1)];
             cubics[axis] = cubic;
         }
-        CornerRow { j, s, cubics, ends, is_edge: j == 0 || j == self.piece.across.steps }
+        let is_edge = j == 0 || j == self.piece.across.steps;
+        CornerRow { j, s, cubics, ends, is_exact: is_edge || self.piece.bits < 16 }
     }
 
     /// Calls `set` with a coordinate of the corners from number `first` on.
@@ -85,7 +87,7 @@ impl<'n> Corners<'n> {
     ) {
         let (base, fraction) = (self.base[axis], self.fraction[axis]);
         let along = &self.piece.along;
-        if row.is_edge {
+        if row.is_exact {
             let cubic = &row.cubics[axis];
             for (i, out) in (first..).zip(out.iter_mut()) {
                 set(out, self.exact(axis, [i, row.j], value_at(cubic, along.half(2 * i))));

@@ -289,19 +289,22 @@ impl<'n> Piece<'n> {
         for j in 0..=self.across.steps - half {
             let s = self.across.half(2 * j + half);
             let y = self.row(1, s);
-            let by_row = sides[1].place(&y);
-            if by_row == Place::Outside {
+            let bounds = bounds(&y);
+            if sides[1].is_beside(bounds) {
                 continue;
             }
+            row.clip[1] = !sides[1].holds(bounds);
             rows += 1;
             let x = self.row(0, s);
-            let by_column = if target.is_wide { sides[0].place(&x) } else { Place::Inside };
-            if by_column == Place::Outside {
-                continue;
+            if target.is_wide {
+                let bounds = self::bounds(&x);
+                if sides[0].is_beside(bounds) {
+                    continue;
+                }
+                row.clip[0] = !sides[0].holds(bounds);
             }
             row.cubics = [x, y, self.row(2, s)];
             (row.j, row.s, row.is_known) = (j, s, false);
-            row.clip = [by_column == Place::Across, by_row == Place::Across];
             let (mut first, mut t) = (0, start);
             loop {
                 let count = (last + 1 - first).min(RUN as u32);
@@ -320,14 +323,6 @@ impl<'n> Piece<'n> {
     fn base(&self, axis: usize) -> i32 {
         self.origin[axis] >> 16
     }
-}
-
-/// Where the values of a row are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Place {
-    Inside,
-    Outside,
-    Across,
 }
 
 /// The columns or the rows of a tile, in the unit of a piece.
@@ -350,19 +345,24 @@ impl Range {
         Self { low: from(start), high: from(start + i64::from(length)) }
     }
 
-    /// Where a row is: from its chord b0 + (b1 + b2 + b3)·t it is b2·(t² − t) + b3·(t³ − t) away, of which the factors
-    /// are 1/4 and 0.385 at most.
+    /// Whether all between two values are outside.
     #[inline(always)]
-    fn place(&self, [start, slope, bend, last]: &RowCubic) -> Place {
-        let end = start.wrapping_add(slope >> 2).wrapping_add(bend >> 1).wrapping_add(last >> 1);
-        let away = (magnitude(*bend) >> 3) + (magnitude(*last) >> 2) + MARGIN;
-        let (least, most) = ((*start).min(end).saturating_sub(away), (*start).max(end).saturating_add(away));
-        if least >= self.low && most < self.high {
-            Place::Inside
-        } else if most < self.low || least >= self.high {
-            Place::Outside
-        } else {
-            Place::Across
-        }
+    fn is_beside(&self, [least, most]: [i32; 2]) -> bool {
+        most < self.low || least >= self.high
     }
+
+    /// Whether all between two values are inside.
+    #[inline(always)]
+    fn holds(&self, [least, most]: [i32; 2]) -> bool {
+        least >= self.low && most < self.high
+    }
+}
+
+/// What the points of a row are between: from its chord b0 + (b1 + b2 + b3)·t it is b2·(t² − t) + b3·(t³ − t) away, of which
+/// the factors are 1/4 and 0.385 at most.
+#[inline(always)]
+fn bounds([start, slope, bend, last]: &RowCubic) -> [i32; 2] {
+    let end = start.wrapping_add(slope >> 2).wrapping_add(bend >> 1).wrapping_add(last >> 1);
+    let away = (magnitude(*bend) >> 3) + (magnitude(*last) >> 2) + MARGIN;
+    [(*start).min(end).saturating_sub(away), (*start).max(end).saturating_add(away)]
 }
