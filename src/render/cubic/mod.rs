@@ -358,11 +358,11 @@ impl Range {
     }
 }
 
-/// What the points of a row are between: from its chord b0 + (b1 + b2 + b3)·t it is b2·(t² − t) + b3·(t³ − t) away, of which
-/// the factors are 1/4 and 0.385 at most.
+/// What the points of a row are between: its control values b0, b0 + b1/3, b0 + (2·b1 + b2)/3 and b0 + b1 + b2 + b3.
 #[inline(always)]
 fn bounds([start, slope, bend, last]: &RowCubic) -> [i32; 2] {
-    let end = start.wrapping_add(slope >> 2).wrapping_add(bend >> 1).wrapping_add(last >> 1);
-    let away = (magnitude(*bend) >> 3) + (magnitude(*last) >> 2) + MARGIN;
-    [(*start).min(end).saturating_sub(away), (*start).max(end).saturating_add(away)]
+    const TWELFTH: i32 = (1 << 30) / 3;
+    let (a, d) = (*start, start.wrapping_add(slope >> 2).wrapping_add(bend >> 1).wrapping_add(last >> 1));
+    let (b, c) = (a + high(*slope, TWELFTH), a + high(slope.wrapping_add(*bend), 2 * TWELFTH));
+    [a.min(b).min(c.min(d)).saturating_sub(MARGIN), a.max(b).max(c.max(d)).saturating_add(MARGIN)]
 }
