@@ -5,8 +5,8 @@ use super::brush::{Shader, Shading};
 use super::cubic;
 use super::cull::{Facing, facing};
 use super::light::Side;
-use super::pen::{Ink, Pen, Rows, Stain};
 use super::notes::Notes;
+use super::pen::{Ink, Pen, Rows, Stain};
 use super::pieces::{Pieces, Reach, Verdict, Wanted, each_piece};
 use super::plan::{Plan, each_lattice};
 use super::style::Cull;
@@ -103,7 +103,7 @@ impl<S: Surface> Filling<'_, '_, S> {
     #[inline(never)]
     fn cubic(&mut self, net: SurfaceNet<'_>, (sampling, turn, steepest): (Sampling, u8, u32)) {
         let mut piece = cubic::Piece::blank(net, (sampling.steps.r(), sampling.steps.s()), turn);
-        piece.set_up(steepest);
+        piece.set_up::<true>(steepest);
         let side = self.side(turn == 1);
         let mut target = cubic::Target {
             area: self.drawing.area,
@@ -153,7 +153,9 @@ impl<S: Surface> Pieces for Filling<'_, '_, S> {
     }
 
     fn keep(&mut self, verdict: &Verdict) {
-        if Self::IS_NOTED && let Some(notes) = &mut self.drawing.notes {
+        if Self::IS_NOTED
+            && let Some(notes) = &mut self.drawing.notes
+        {
             notes.keep(verdict);
         }
     }

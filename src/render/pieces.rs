@@ -55,7 +55,11 @@ pub(super) enum Way {
     Split(Split),
     /// By this lattice, of which a polynomial tensor product of degree 3 or less is turned so; the steepest derivative of
     /// that is at most so many 2^-9.
-    Draw { sampling: Sampling, turn: u8, steepest: u32 },
+    Draw {
+        sampling: Sampling,
+        turn: u8,
+        steepest: u32,
+    },
 }
 
 /// What is done with a piece, and whether it faces the viewer everywhere, as far as is known.

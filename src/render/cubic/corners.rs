@@ -1,11 +1,10 @@
 //! Corners of a grid: ⌊256·S⌋, exact on edges, within 1/128 pixel inside.
 //!
-//! On an edge, and at the ends of a row, values come from [`value_at`], less than 16 units off, and [`exact`](super::exact)
-//! decides where that is not enough: patches on both sides of an edge get equal bits. Inside, rows are walked by differences,
-//! which takes 16 fraction bits; wild nets, which have fewer, are exact there too.
+//! Values come from [`value_at`], less than 16 units off. On an edge, and at the ends of a row, [`exact`](super::exact) decides
+//! where that is not enough: patches on both sides of an edge get equal bits. Wild nets, for which values have few bits, are
+//! exact inside, too.
 
 use super::super::light::Side;
-use super::run::Line;
 use super::steps::value_at;
 use super::tangents::{RowTangents, normal_of};
 use super::{Piece, RowCubic};
@@ -16,7 +15,10 @@ const CORNER: u32 = 8;
 
 /// What values may be off; and those of a net that was cut.
 const DOUBT: i32 = 16;
-const DOUBT_IF_CUT: i32 = 64;
+const DOUBT_IF_CUT: i32 = 32;
+
+/// The least F for which all that is less than 1/128 pixel.
+const LEAST_BITS: u32 = 14;
 
 /// The grid of a piece that [`suits`](super::suits).
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +48,7 @@ impl<'n> Corners<'n> {
     /// The grid of a net with so many segments; rows run along s if `is_turned`.
     pub(in crate::render) fn new(net: SurfaceNet<'n>, steps: (u32, u32), is_turned: bool, steepest: u32) -> Self {
         let mut piece = Piece::blank(net, steps, u8::from(is_turned));
-        piece.set_up(steepest);
+        piece.set_up::<false>(steepest);
         let start = piece.origin.map(|c| c - (1 << 15));
         let (up, less) = (piece.bits.saturating_sub(16), 16_u32.saturating_sub(piece.bits));
         let doubt = if piece.is_cut { DOUBT_IF_CUT } else { DOUBT };
@@ -72,7 +74,7 @@ impl<'n> Corners<'n> {
             cubics[axis] = cubic;
         }
         let is_edge = j == 0 || j == self.piece.across.steps;
-        CornerRow { j, s, cubics, ends, is_exact: is_edge || self.piece.bits < 16 }
+        CornerRow { j, s, cubics, ends, is_exact: is_edge || self.piece.bits < LEAST_BITS }
     }
 
     /// Calls `set` with a coordinate of the corners from number `first` on.
@@ -85,18 +87,18 @@ impl<'n> Corners<'n> {
         out: &mut [T],
         set: impl Fn(&mut T, i32),
     ) {
-        let (base, fraction) = (self.base[axis], self.fraction[axis]);
-        let along = &self.piece.along;
+        let (along, cubic) = (&self.piece.along, &row.cubics[axis]);
         if row.is_exact {
-            let cubic = &row.cubics[axis];
             for (i, out) in (first..).zip(out.iter_mut()) {
                 set(out, self.exact(axis, [i, row.j], value_at(cubic, along.half(2 * i))));
             }
         } else {
-            let mut line: Line = self.piece.differences.line(&row.cubics[axis], along.half(2 * first), fraction);
+            let (base, fraction, step) = (self.base[axis], self.fraction[axis], 2 * along.near());
+            let mut t = first.wrapping_mul(step);
             for out in out.iter_mut() {
-                set(out, (line.value << self.doublings >> self.shift).wrapping_add(base));
-                line.step();
+                let value = value_at(cubic, t as i32).wrapping_add(fraction);
+                set(out, (value << self.doublings >> self.shift).wrapping_add(base));
+                t = t.wrapping_add(step);
                 core::hint::black_box(());
             }
         }
@@ -128,6 +130,7 @@ impl<'n> Corners<'n> {
     /// Finds the tangents of a row.
     pub(in crate::render) fn tangents(&self, row: &CornerRow, out: &mut RowTangents) {
         self.piece.tangents(&row.cubics, row.s, out);
+        out.double();
     }
 
     /// The normal S_r × S_s of the walk at corner (i, j), from the tangents of its row; where they span no plane, that 1/64

@@ -38,7 +38,7 @@ use super::light::Side;
 use super::pen::{Ink, Stain};
 use super::tile::Area;
 use crate::geometry::Point3;
-use crate::num::high;
+use crate::num::{high, leading_zeros};
 use crate::patch::{Surface, SurfaceNet};
 pub(super) use corners::Corners;
 use row::{Row, Units};
@@ -46,9 +46,8 @@ use run::{DOUBT, Depths, Line, Pixels, Points, RUN, Raster};
 use steps::{Differences, Parameters};
 pub(super) use tangents::RowTangents;
 
-/// The most bits that values have more than the net; and than one that was cut, whose values are off by a unit before.
+/// The most bits that values have more than the net.
 const MOST_MORE: i32 = 12;
-const MOST_CUT_MORE: i32 = 5;
 
 /// A cubic c0 + c1·t + c2·t² + c3·t³ as c0, 2·c1, 4·c2, 8·c3.
 type Cubic = [i32; 4];
@@ -60,6 +59,11 @@ type RowCubic = [i32; 4];
 #[inline(always)]
 fn at(c: &Cubic, t: i32) -> i32 {
     c[0].wrapping_add(high(c[1].wrapping_add(high(c[2].wrapping_add(high(c[3], t)), t)), t))
+}
+
+/// The leading zeros of magnitudes.
+fn zeros(all: i32) -> i32 {
+    leading_zeros(all as u32 | 1) as i32
 }
 
 /// The magnitude of a number, or one less.
@@ -155,31 +159,29 @@ impl<'n> Piece<'n> {
         }
     }
 
-    /// Finds the coefficients; `steepest` is the largest bound on a derivative, in 2^-9.
+    /// Finds the coefficients; `steepest` is the largest bound on a derivative, in 2^-9. `WALKED`: lines along rows are
+    /// wanted.
     #[inline(never)]
-    pub(super) fn set_up(&mut self, steepest: u32) {
-        // 768·E·2^(16 − down) is below 2^31.
-        let down = 16_u32.saturating_sub(steepest.leading_zeros());
-        let (mut sizes, mut values) = ([0; 4], [0; 16]);
-        self.gather(|p| p.x.to_bits() >> down, &mut values);
-        self.set_axis(&values, 0, &mut sizes);
-        self.gather(|p| p.y.to_bits() >> down, &mut values);
-        self.set_axis(&values, 1, &mut sizes);
-        self.gather(|p| p.z.to_bits() >> down, &mut values);
-        self.set_axis(&values, 2, &mut sizes);
-        self.depths = self.range(&values);
+    pub(super) fn set_up<const WALKED: bool>(&mut self, steepest: u32) {
+        // 768·E·2^(16 − down) is below 2^31. Mostly there is much more room: then no bit is dropped after all.
+        let mut down = 16_u32.saturating_sub(steepest.leading_zeros());
+        // What is left for sums; differences of long steps are larger than values.
+        let less = if !WALKED { 2 } else { 3 + if self.along.steps < 4 { 3 } else { 0 } };
+        let (mut sizes, mut spare) = self.find(down, less);
+        if down > 0 && spare > 0 {
+            down = down.saturating_sub(spare as u32);
+            (sizes, spare) = self.find(down, less);
+        }
         if let Some(p) = self.points.first() {
             self.origin = p.to_array().map(|c| c.to_bits() + (1 << 15));
         }
-        let [b0, b1, b2, b3] = sizes;
-        let zeros = |all: i32| (all as u32 | 1).leading_zeros() as i32;
-        let spare = (zeros(b0 | b1 | b2) - 3).min(zeros(b3) - 5) - if self.along.steps < 4 { 3 } else { 0 };
-        let more = spare.min(if down > 0 { MOST_CUT_MORE } else { MOST_MORE });
+        let more = spare.min(if down > 0 { 0 } else { MOST_MORE });
         self.is_cut = down > 0 || more < 0;
         self.bits = (16 - down as i32 + more).max(0) as u32;
+        let [b0, b1, b2, b3] = sizes;
         // Values of coefficients are less than twice as large, those of derivatives less than three times.
         let doublings = |all: i32| (zeros(all) - more - 4).clamp(0, 31) as u32;
-        self.doublings = [doublings(b1 >> 3 | b2 | b3 << 2), doublings(b0 >> 2 | b1 >> 3 | b2 >> 1 | b3)];
+        self.doublings = [doublings(b1 >> 4 | b2 >> 1 | b3 << 1), doublings(b0 >> 2 | b1 >> 3 | b2 >> 1 | b3)];
         self.take(down, more);
     }
 
@@ -231,6 +233,22 @@ impl<'n> Piece<'n> {
         let rows = values.as_chunks::<4>().0.iter().take(self.degrees[1] + 1);
         rows.flat_map(|row| row.iter().take(self.degrees[0] + 1))
             .fold([0; 2], |[least, most], value| [least.min(*value), most.max(*value)])
+    }
+
+    /// Finds the coefficients from `down` bits less than the net has; what bits they have, and how often they can be doubled so
+    /// that `less` bits are left, and two more of the last one.
+    #[inline(never)]
+    fn find(&mut self, down: u32, less: i32) -> ([i32; 4], i32) {
+        let (mut sizes, mut values) = ([0; 4], [0; 16]);
+        self.gather(|p| p.x.to_bits() >> down, &mut values);
+        self.set_axis(&values, 0, &mut sizes);
+        self.gather(|p| p.y.to_bits() >> down, &mut values);
+        self.set_axis(&values, 1, &mut sizes);
+        self.gather(|p| p.z.to_bits() >> down, &mut values);
+        self.set_axis(&values, 2, &mut sizes);
+        self.depths = self.range(&values);
+        let [b0, b1, b2, b3] = sizes;
+        (sizes, zeros(b0 | b1 | b2).min(zeros(b3) - 2) - less)
     }
 
     /// Brings values to their fraction bits: `more` than they have.

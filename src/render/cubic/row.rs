@@ -81,13 +81,7 @@ impl Row<'_, '_> {
 
     /// Gives the points that were seen their colours.
     #[inline(always)]
-    fn colour(
-        &mut self,
-        first: u32,
-        (index, seen): (&[u32], &[u8]),
-        levels: &mut [u8],
-        target: &mut Target<'_>,
-    ) {
+    fn colour(&mut self, first: u32, (index, seen): (&[u32], &[u8]), levels: &mut [u8], target: &mut Target<'_>) {
         let shading = target.shading;
         if shading.style.needs_normals() && !self.is_known {
             self.piece.tangents(&self.cubics, self.s, &mut self.tangents);

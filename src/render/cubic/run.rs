@@ -215,11 +215,7 @@ impl Depths {
         let mut line = *line;
         in_pairs(out, |out| {
             let rest = line.value >> shift;
-            *out = if WHOLE {
-                base.wrapping_add(rest) as u16
-            } else {
-                self.window.depth_of_parts(self.base, rest)
-            };
+            *out = if WHOLE { base.wrapping_add(rest) as u16 } else { self.window.depth_of_parts(self.base, rest) };
             line.step();
         });
     }

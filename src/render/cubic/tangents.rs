@@ -19,14 +19,13 @@ impl Piece<'_> {
     #[inline(never)]
     pub(super) fn tangents(&self, rows: &[RowCubic; 3], s: i32, out: &mut RowTangents) {
         let [by_r, by_s] = self.doublings.map(|up| up & 31);
-        // b1 + 2·b2·t + 3·b3·t² from 4·b1, 2·b2 and 2·b3, half of it and doubled.
+        // b1 + 2·b2·t + 3·b3·t² from 4·b1, 2·b2 and 2·b3, a quarter of it and doubled.
         for (along, [_, slope, bend, last]) in out.along.iter_mut().zip(rows) {
-            *along = [slope >> 3 << by_r, *bend << by_r, last.wrapping_mul(3) << by_r];
+            *along = [slope >> 4 << by_r, bend >> 1 << by_r, (last >> 1).wrapping_mul(3) << by_r];
         }
         // From c0, 2·c1, 4·c2, 8·c3 to c1, 4·c2, 12·c3.
-        let slope = |c: &Cubic| {
-            (c[1] >> 1).wrapping_add(high(c[2].wrapping_add(high(c[3].wrapping_add(c[3] >> 1), s)), s))
-        };
+        let slope =
+            |c: &Cubic| (c[1] >> 1).wrapping_add(high(c[2].wrapping_add(high(c[3].wrapping_add(c[3] >> 1), s)), s));
         for (across, [a, b, c, d]) in out.across.iter_mut().zip(&self.rows) {
             // A quarter of b0, 2·b1, 4·b2 and 8·b3, doubled.
             *across = [slope(a) >> 2 << by_s, slope(b) >> 3 << by_s, slope(c) >> 1 << by_s, slope(d) << by_s];
@@ -35,6 +34,17 @@ impl Piece<'_> {
 }
 
 impl RowTangents {
+    /// Doubles both as often as this row allows: those of a whole patch are long in others.
+    pub(super) fn double(&mut self) {
+        let up = |all: &[i32]| {
+            let all = all.iter().fold(0, |all, c| all | magnitude(*c));
+            leading_zeros(all as u32 | 1).saturating_sub(3)
+        };
+        let (by_r, by_s) = (up(self.along.as_flattened()), up(self.across.as_flattened()));
+        self.along.as_flattened_mut().iter_mut().for_each(|c| *c <<= by_r & 31);
+        self.across.as_flattened_mut().iter_mut().for_each(|c| *c <<= by_s & 31);
+    }
+
     #[inline(always)]
     pub(super) fn at(&self, t: i32) -> [[i32; 3]; 2] {
         let ([x, y, z], [u, v, w]) = (&self.along, &self.across);

@@ -36,7 +36,7 @@ fn drawn(net: SurfaceNet<'_>, steps: (u32, u32), turn: u8, centred: bool, area: 
     let mut depth = vec![u16::MAX; area.pixels()];
     let shading = Shading { light: &Light::default(), style: Style::Flat, window: DepthWindow::of(0, 0) };
     let mut piece = Piece::blank(net, steps, turn);
-    piece.set_up(PieceSlopes::of(net).steepest(net));
+    piece.set_up::<true>(PieceSlopes::of(net).steepest(net));
     piece.draw(
         centred,
         &mut Target {
