@@ -17,8 +17,10 @@ const CORNER: u32 = 8;
 const DOUBT: i32 = 16;
 const DOUBT_IF_CUT: i32 = 32;
 
-/// The least F for which all that is less than 1/128 pixel.
+/// The least F, and the most segments of a row, for which values and parameters inside are off by less than 1/256 pixel where
+/// a segment has 32 pixels at most.
 const LEAST_BITS: u32 = 14;
+const MOST_SEGMENTS: u32 = 256;
 
 /// The grid of a piece that [`suits`](super::suits).
 #[derive(Clone, Copy, Debug)]
@@ -74,7 +76,8 @@ impl<'n> Corners<'n> {
             cubics[axis] = cubic;
         }
         let is_edge = j == 0 || j == self.piece.across.steps;
-        CornerRow { j, s, cubics, ends, is_exact: is_edge || self.piece.bits < LEAST_BITS }
+        let is_exact = is_edge || self.piece.bits < LEAST_BITS || self.piece.along.steps > MOST_SEGMENTS;
+        CornerRow { j, s, cubics, ends, is_exact }
     }
 
     /// Calls `set` with a coordinate of the corners from number `first` on.

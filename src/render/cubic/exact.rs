@@ -1,11 +1,12 @@
 //! The exact pixel of a lattice point: the sign of a residual, modulo 2^w.
 
 use super::Piece;
+use super::run::DOUBT;
 use crate::geometry::Point3;
 use crate::num::Word;
 
-/// Points are off by less than 2^9 units of 2^-F.
-const WRONG: u32 = 9;
+/// Points are off by less than 2^10 units of 2^-F.
+const WRONG: u32 = DOUBT.ilog2();
 
 /// Binomial weights of degree 3 and less.
 const CHOICES: [[i64; 4]; 4] = [[1, 0, 0, 0], [1, 1, 0, 0], [1, 2, 1, 0], [1, 3, 3, 1]];

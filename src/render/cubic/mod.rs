@@ -4,24 +4,29 @@
 //! row by row, and where they are seen their normals.
 //!
 //! # How
-//! All values are taken from the first control point on, in 2^-F pixel. Along each column of the net S is a cubic in s:
-//! its coefficients are found once. A row is a cubic in r through what the columns are at s; it is walked by differences
-//! with 4 bits more, an axis at a time, so that the state of one cubic stays in registers: three additions and a shift a
-//! point. Where the fraction of x or y is too close to a pixel's border, [`exact`] decides.
+//! All values are taken from the first control point on, in 2^-F pixel. A row is b0 + b1·t + b2·t² + b3·t³ along each axis;
+//! its coefficients are cubics in s, whose own coefficients are found once. A row is walked by differences with 4 bits
+//! more, an axis at a time, so that the state of one cubic stays in registers: three additions and a shift a point. Where
+//! the fraction of x or y is too close to a pixel's border, [`exact`] decides.
 //!
 //! # Why it is right
-//! Let E be the largest difference of neighbours in the net, m ≥ 3E the largest bound on a derivative along any axis. F is
-//! taken such that 48·E < 2^31: every coefficient below, times the power of two that [`at`] wants, fits. Each [`high`]
-//! rounds down by less than one unit, so a value by `at` is within 3 units, and a parameter in 2^-31, within two of them,
-//! adds less than one. Control values of a row are within 5 units (one of them where F < 16 drops bits of the net), and so
-//! is every point of the cubic through them.
+//! Rows are kept as b0, 4·b1, 2·b2 and 2·b3: what their differences are sums of, in products of 32 bits. F is taken such that
+//! the cubics in s, times the powers of two that [`at`] wants, are below 2^29, that of the last one below 2^27. Then all sums
+//! fit. With E the largest difference of neighbours in the net, none is above 768·E: nets of which that does not fit to begin
+//! with drop low bits. Most have a tenth of it or less.
 //!
-//! A run of at most [`RUN`] points starts at such a value. Differences, in 2^-(F+4), are rounded by at most 3, 2.2 and 1.2
-//! units, their factors 1/n² and 1/n³ by less than 2^-27 and 2^-25 of themselves: after k ≤ 31 steps the sum is off by at
-//! most 3k + 2.2·k(k−1)/2 + 1.2·k(k−1)(k−2)/6 of those units, and 11 units of 2^-F for the factors; dropping 4 bits at each
-//! step costs up to 31 more. In all that is below 500; [`DOUBT`] is twice as much.
+//! Each [`high`] rounds down by less than one unit, so a value by `at` is within 3 units, and a parameter in 2^-31, within
+//! two of them, adds less than one. At the start of a run a value is within 14 units, and so it would be along the exact
+//! cubic from there: 7 for b0 to b3, or 32 where the run does not start at t = 0; 3 more where bits of the net were
+//! dropped.
 //!
-//! Depths are those of the fixed-point z: within one unit of the exact ones.
+//! A run has at most [`RUN`] points. Its differences, in 2^-(F+4), are off by 3.75·2^e, 2.5·2^e' and 1.25·2^e' of those
+//! units, with the shifts of [`Differences`]: after k ≤ min(n, 31) steps, for which e and e' are made, the sum is off by at
+//! most 3.75·2^e·k + 2.5·2^e'·k(k−1)/2 + 1.25·2^e'·k(k−1)(k−2)/6 of those units, which is 453 of 2^-F. The factors 1/n, 1/n²
+//! and 1/n³, within 2^-29, 2^-27 and 2^-25 of themselves, add 9 units, dropping 4 bits at each step up to 31. In all that
+//! is below 600; [`DOUBT`] is more.
+//!
+//! Depths are those of the fixed-point z: within one unit of the exact ones where F is 16 or more.
 
 mod corners;
 mod exact;

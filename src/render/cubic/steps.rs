@@ -103,7 +103,7 @@ fn move_by(row: &mut RowCubic, t: i32) {
     row[2] = bend.wrapping_add(high(last, t).wrapping_mul(6));
 }
 
-/// The value of a row at a parameter in 2^-31, rounded down: within 11 units, and what b0 to b3 are off.
+/// The value of a row at a parameter in 2^-31, rounded down by less than 7 units.
 #[inline(always)]
 pub(super) fn value_at([start, slope, bend, last]: &RowCubic, t: i32) -> i32 {
     let product = high((bend >> 1).wrapping_add(high(*last, t)), t);
