@@ -6,7 +6,7 @@ use embedded_surfaces::geometry::{Affine, View};
 use embedded_surfaces::graphics::Palette;
 use embedded_surfaces::num::I16F16;
 use embedded_surfaces::patch::{BicubicPatch, Tensor};
-use embedded_surfaces::render::{Area, Cull, Facet, Frame, Light, Scene, Style};
+use embedded_surfaces::render::{Area, Cull, Facet, Frame, Light, Notes, Scene, Style};
 use embedded_surfaces::subdivide::PatchTopology;
 
 pub(crate) const AREA: Area = Area { x: 0, y: 0, width: 320, height: 240 };
@@ -45,12 +45,13 @@ pub(crate) static PAINT: Palette<Rgb565> = {
     Palette { colours }
 };
 
-/// What a frame needs: 6 KB of patches, two bytes of colour and two of depth for each pixel of a band, and for a list of
-/// facets 32 bytes a facet and two bytes for each facet and each band.
+/// What a frame needs: 6 KB of patches, two bytes of colour and two of depth for each pixel of a band, for exact points 332
+/// bytes of notes, and for a list of facets 32 bytes a facet and two bytes for each facet and each band.
 pub(crate) struct Buffers<const PIXELS: usize, const FACETS: usize, const LINKS: usize> {
     pub(crate) patches: [BicubicPatch; 32],
     pub(crate) facets: [Facet; FACETS],
     pub(crate) links: [u16; LINKS],
+    pub(crate) notes: Notes,
     pub(crate) colour: [Rgb565; PIXELS],
     pub(crate) depth: [u16; PIXELS],
 }
@@ -61,6 +62,7 @@ impl<const PIXELS: usize, const FACETS: usize, const LINKS: usize> Buffers<PIXEL
             patches: [teapot::BLANK; 32],
             facets: [Facet::EMPTY; FACETS],
             links: [0; LINKS],
+            notes: Notes::EMPTY,
             colour: [Rgb565::BLACK; PIXELS],
             depth: [0; PIXELS],
         }
@@ -100,13 +102,13 @@ pub(crate) fn draw<const GRID: bool, const FACETS: usize, const LINKS: usize>(
     buffers: &mut Buffers<BAND, FACETS, LINKS>,
     mut row: impl FnMut(&[Rgb565]),
 ) -> Option<()> {
-    let Buffers { patches, facets, links, colour, depth } = buffers;
+    let Buffers { patches, facets, links, notes, colour, depth } = buffers;
     place(&view()?, patches)?;
     for area in [Area { height: UPPER, ..AREA }, Area { y: UPPER as i32, height: AREA.height - UPPER, ..AREA }] {
         let mut frame = if GRID {
             grid(patches, area, ROWS)?.with_facets(&mut *facets, &mut *links).ok()?
         } else {
-            exact(patches, area, ROWS)?
+            exact(patches, area, ROWS)?.with_notes(notes)
         };
         while let Some(band) = frame.next_band(colour, depth).ok()? {
             band.pixels().chunks_exact(AREA.width as usize).for_each(&mut row);

@@ -8,15 +8,16 @@
 use super::pieces::{Split, Verdict, Way};
 use crate::forward::{Sampling, Steps};
 
-/// The most pieces that are noted between two bands, a power of two: a teapot of 320 × 240 pixels in bands of 16 rows, without
-/// its back sides, needs 85 in the mean of the bands that it is in, and this many once.
-const NOTES: usize = 128;
+/// The most pieces that are noted between two bands: a teapot of 320 × 240 pixels in bands of 16 rows, without its back sides,
+/// needs 85 in the mean of the bands that it is in.
+const NOTES: u16 = 80;
 
-/// The notes of a frame: 524 bytes.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Notes {
+/// What bands of exact points remember of pieces that reach into the next one: 332 bytes of the caller's, for
+/// [`Frame::with_notes`](super::Frame::with_notes).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Notes {
     /// 0 for a piece that is to be looked at again.
-    ring: [u32; NOTES],
+    ring: [u32; NOTES as usize],
     /// Where the next note is taken from, and where it goes.
     read: u16,
     write: u16,
@@ -27,30 +28,52 @@ pub(super) struct Notes {
 }
 
 impl Notes {
-    pub(super) const EMPTY: Self = Self { ring: [0; NOTES], read: 0, write: 0, left: 0, kept: 0, is_full: false };
+    /// No notes.
+    pub const EMPTY: Self = Self { ring: [0; NOTES as usize], read: 0, write: 0, left: 0, kept: 0, is_full: false };
 
     /// Begins the next band.
     pub(super) fn turn(&mut self) {
-        self.read = self.write.wrapping_sub(self.kept);
+        let before = if self.kept > self.write { NOTES } else { 0 };
+        self.read = self.write + before - self.kept;
         (self.left, self.kept, self.is_full) = (self.kept, 0, false);
     }
 
     /// What the band before wrote down about the next of the pieces that reach into this one.
     pub(super) fn recall(&mut self) -> Option<Verdict> {
         self.left = self.left.checked_sub(1)?;
-        let note = self.ring[usize::from(self.read) % NOTES];
-        self.read = self.read.wrapping_add(1);
-        unpacked(note)
+        let note = self.ring.get(usize::from(self.read)).copied();
+        self.read = after(self.read);
+        unpacked(note?)
     }
 
     /// Writes down what is done with the next of the pieces that reach into the next band.
     pub(super) fn keep(&mut self, verdict: &Verdict) {
-        self.is_full |= usize::from(self.left) + usize::from(self.kept) >= NOTES;
-        if !self.is_full {
-            self.ring[usize::from(self.write) % NOTES] = packed(verdict);
-            (self.write, self.kept) = (self.write.wrapping_add(1), self.kept + 1);
+        self.is_full |= self.left + self.kept >= NOTES;
+        if !self.is_full
+            && let Some(note) = self.ring.get_mut(usize::from(self.write))
+        {
+            *note = packed(verdict);
+            (self.write, self.kept) = (after(self.write), self.kept + 1);
         }
     }
+}
+
+impl Default for Notes {
+    fn default() -> Self {
+        Self::EMPTY
+    }
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for Notes {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "notes of {} pieces", self.kept);
+    }
+}
+
+/// The place after one in the ring.
+fn after(place: u16) -> u16 {
+    if place + 1 < NOTES { place + 1 } else { 0 }
 }
 
 /// Steps up to this fit.
@@ -122,7 +145,7 @@ mod tests {
     #[test]
     fn bands_recall_what_the_one_before_kept() {
         let mut notes = Notes::EMPTY;
-        let counts = [3, 60, 128, 127, 130, 1, 0, 300, 5];
+        let counts = [3, 60, 80, 79, 81, 1, 0, 300, 5];
         let mut before: Vec<u32> = Vec::new();
         for (band, count) in (0..).zip(counts) {
             notes.turn();

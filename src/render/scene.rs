@@ -281,6 +281,7 @@ impl<'a, S: Surface> Scene<'a, S> {
     }
 
     /// The same for the next band of a frame, with its notes.
+    #[inline(always)]
     pub(super) fn draw_noted<P: Paint>(
         &self,
         tile: &mut Tile<'_, P::Pixel>,
