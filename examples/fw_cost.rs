@@ -66,11 +66,12 @@ pub(crate) fn report(out: &mut impl core::fmt::Write) -> core::fmt::Result {
 
 /// Instructions, pixels and their sum of a frame in bands of so many rows; `None` if it was refused.
 fn cost<const GRID: bool>(buffers: &mut Buffers, rows: u32, with_list: bool) -> Option<[i64; 3]> {
-    let Buffers { patches, facets, links, notes, colour, depth } = buffers;
+    let Buffers { patches, facets, links, colour, depth } = buffers;
+    let mut notes = Notes::EMPTY;
     let map = core::hint::black_box(frame::view()?);
     let list = with_list.then_some((&mut facets[..], &mut links[..]));
     let mut frame = None;
-    let mut instructions = counter::count(|| frame = start::<GRID>(&map, patches, rows, list, notes));
+    let mut instructions = counter::count(|| frame = start::<GRID>(&map, patches, rows, list, &mut notes));
     let (mut frame, mut pixels, mut sum) = (frame?, 0, 0_u32);
     loop {
         let mut band = None;

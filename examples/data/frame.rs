@@ -45,13 +45,12 @@ pub(crate) static PAINT: Palette<Rgb565> = {
     Palette { colours }
 };
 
-/// What a frame needs: 6 KB of patches, two bytes of colour and two of depth for each pixel of a band, for exact points 332
-/// bytes of notes, and for a list of facets 32 bytes a facet and two bytes for each facet and each band.
+/// What a frame needs: 6 KB of patches, two bytes of colour and two of depth for each pixel of a band, and for a list of
+/// facets 32 bytes a facet and two bytes for each facet and each band.
 pub(crate) struct Buffers<const PIXELS: usize, const FACETS: usize, const LINKS: usize> {
     pub(crate) patches: [BicubicPatch; 32],
     pub(crate) facets: [Facet; FACETS],
     pub(crate) links: [u16; LINKS],
-    pub(crate) notes: Notes,
     pub(crate) colour: [Rgb565; PIXELS],
     pub(crate) depth: [u16; PIXELS],
 }
@@ -62,7 +61,6 @@ impl<const PIXELS: usize, const FACETS: usize, const LINKS: usize> Buffers<PIXEL
             patches: [teapot::BLANK; 32],
             facets: [Facet::EMPTY; FACETS],
             links: [0; LINKS],
-            notes: Notes::EMPTY,
             colour: [Rgb565::BLACK; PIXELS],
             depth: [0; PIXELS],
         }
@@ -102,13 +100,15 @@ pub(crate) fn draw<const GRID: bool, const FACETS: usize, const LINKS: usize>(
     buffers: &mut Buffers<BAND, FACETS, LINKS>,
     mut row: impl FnMut(&[Rgb565]),
 ) -> Option<()> {
-    let Buffers { patches, facets, links, notes, colour, depth } = buffers;
+    let Buffers { patches, facets, links, colour, depth } = buffers;
+    // 0.5 KB, for exact points alone.
+    let mut notes = Notes::EMPTY;
     place(&view()?, patches)?;
     for area in [Area { height: UPPER, ..AREA }, Area { y: UPPER as i32, height: AREA.height - UPPER, ..AREA }] {
         let mut frame = if GRID {
             grid(patches, area, ROWS)?.with_facets(&mut *facets, &mut *links).ok()?
         } else {
-            exact(patches, area, ROWS)?.with_notes(notes)
+            exact(patches, area, ROWS)?.with_notes(&mut notes)
         };
         while let Some(band) = frame.next_band(colour, depth).ok()? {
             band.pixels().chunks_exact(AREA.width as usize).for_each(&mut row);
