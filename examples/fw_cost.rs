@@ -25,7 +25,7 @@ pub(crate) mod teapot;
 use embedded_graphics_core::pixelcolor::IntoStorage;
 use embedded_surfaces::geometry::Affine;
 use embedded_surfaces::patch::BicubicPatch;
-use embedded_surfaces::render::Facet;
+use embedded_surfaces::render::{Facet, Notes};
 use frame::{AREA, BANDS, Picture, ROWS};
 
 /// Facets of a list: the frame has 867.
@@ -67,10 +67,11 @@ pub(crate) fn report(out: &mut impl core::fmt::Write) -> core::fmt::Result {
 /// Instructions, pixels and their sum of a frame in bands of so many rows; `None` if it was refused.
 fn cost<const GRID: bool>(buffers: &mut Buffers, rows: u32, with_list: bool) -> Option<[i64; 3]> {
     let Buffers { patches, facets, links, colour, depth } = buffers;
+    let mut notes = Notes::EMPTY;
     let map = core::hint::black_box(frame::view()?);
     let list = with_list.then_some((&mut facets[..], &mut links[..]));
     let mut frame = None;
-    let mut instructions = counter::count(|| frame = start::<GRID>(&map, patches, rows, list));
+    let mut instructions = counter::count(|| frame = start::<GRID>(&map, patches, rows, list, &mut notes));
     let (mut frame, mut pixels, mut sum) = (frame?, 0, 0_u32);
     loop {
         let mut band = None;
@@ -88,9 +89,11 @@ fn start<'a, const GRID: bool>(
     patches: &'a mut [BicubicPatch; 32],
     rows: u32,
     list: Option<(&'a mut [Facet], &'a mut [u16])>,
+    notes: &'a mut Notes,
 ) -> Option<Picture<'a>> {
     frame::place(map, patches)?;
-    let frame = if GRID { frame::grid(patches, AREA, rows)? } else { frame::exact(patches, AREA, rows)? };
+    let frame =
+        if GRID { frame::grid(patches, AREA, rows)? } else { frame::exact(patches, AREA, rows)?.with_notes(notes) };
     match list {
         Some((facets, links)) => frame.with_facets(facets, links).ok(),
         None => Some(frame),

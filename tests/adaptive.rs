@@ -8,7 +8,7 @@ mod scene;
 use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::patch::{BicubicPatch, CubicTriangle, Surface};
 use embedded_surfaces::reference::{Audit, Coverage};
-use embedded_surfaces::render::{Area, Cull, Fragment, Frame, Light, Scene, Statistics, Style};
+use embedded_surfaces::render::{Area, Cull, Fragment, Frame, Light, Notes, Scene, Statistics, Style};
 use embedded_surfaces::subdivide::{PatchTopology, topology};
 use scene::{Look, Random, VIEWS, teacup, teapot};
 
@@ -96,10 +96,11 @@ fn random_cubic_triangles() {
     assert!(per_pixel <= 2.2, "{per_pixel}");
 }
 
-/// The pixels of a picture in bands of so many rows.
+/// The pixels of a picture in bands of so many rows, which take notes.
 fn picture<S: Surface>(scene: Scene<'_, S>, area: Area, rows: u32) -> (Vec<u8>, Statistics) {
     let paint = |f: Fragment| f.shade;
-    let mut frame = Frame::new(scene, &paint, 0, area, rows).unwrap();
+    let mut notes = Notes::EMPTY;
+    let mut frame = Frame::new(scene, &paint, 0, area, rows).unwrap().with_notes(&mut notes);
     let (mut colour, mut depth) = (vec![0; frame.band_pixels()], vec![0; frame.band_pixels()]);
     let mut pixels = Vec::new();
     while let Some(band) = frame.next_band(&mut colour, &mut depth).unwrap() {

@@ -14,12 +14,12 @@ use embedded_surfaces::forward::LatticeError;
 use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::graphics::{Material, Model, Shade};
 use embedded_surfaces::patch::{BicubicPatch, BilinearPatch, Surface, SurfaceNet, TensorNet};
-use embedded_surfaces::render::{Area, Fragment, Frame, Light, Paint, RenderError, Scene, Style, Tile};
+use embedded_surfaces::render::{Area, Fragment, Frame, Light, Notes, Paint, RenderError, Scene, Style, Tile};
 use scene::{Look, VIEWS, teapot};
 
 const SCREEN: Area = Area { x: 0, y: 0, width: 320, height: 240 };
 
-/// The whole picture, pulled in bands.
+/// The whole picture, pulled in bands, which take notes.
 fn picture<S: Surface, P: Paint>(
     patches: &[S],
     style: Style,
@@ -28,7 +28,8 @@ fn picture<S: Surface, P: Paint>(
     rows: u32,
 ) -> Vec<P::Pixel> {
     let scene = Scene::new(patches, Light::default(), style).unwrap();
-    let mut frame = Frame::new(scene, paint, background, SCREEN, rows).unwrap();
+    let mut notes = Notes::default();
+    let mut frame = Frame::new(scene, paint, background, SCREEN, rows).unwrap().with_notes(&mut notes);
     let (mut colour, mut depth) = (vec![background; frame.band_pixels()], vec![0; frame.band_pixels()]);
     let mut pixels = Vec::new();
     while let Some(band) = frame.next_band(&mut colour, &mut depth).unwrap() {

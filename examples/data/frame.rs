@@ -6,7 +6,7 @@ use embedded_surfaces::geometry::{Affine, View};
 use embedded_surfaces::graphics::Palette;
 use embedded_surfaces::num::I16F16;
 use embedded_surfaces::patch::{BicubicPatch, Tensor};
-use embedded_surfaces::render::{Area, Cull, Facet, Frame, Light, Scene, Style};
+use embedded_surfaces::render::{Area, Cull, Facet, Frame, Light, Notes, Scene, Style};
 use embedded_surfaces::subdivide::PatchTopology;
 
 pub(crate) const AREA: Area = Area { x: 0, y: 0, width: 320, height: 240 };
@@ -101,12 +101,14 @@ pub(crate) fn draw<const GRID: bool, const FACETS: usize, const LINKS: usize>(
     mut row: impl FnMut(&[Rgb565]),
 ) -> Option<()> {
     let Buffers { patches, facets, links, colour, depth } = buffers;
+    // 0.5 KB, for exact points alone.
+    let mut notes = Notes::EMPTY;
     place(&view()?, patches)?;
     for area in [Area { height: UPPER, ..AREA }, Area { y: UPPER as i32, height: AREA.height - UPPER, ..AREA }] {
         let mut frame = if GRID {
             grid(patches, area, ROWS)?.with_facets(&mut *facets, &mut *links).ok()?
         } else {
-            exact(patches, area, ROWS)?
+            exact(patches, area, ROWS)?.with_notes(&mut notes)
         };
         while let Some(band) = frame.next_band(colour, depth).ok()? {
             band.pixels().chunks_exact(AREA.width as usize).for_each(&mut row);

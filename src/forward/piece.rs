@@ -134,10 +134,19 @@ impl PieceSlopes {
     }
 
     /// A bound along all axes, in 2^-9 unit, for a tensor-product net: at least the degree times every difference of
-    /// neighbours, along z up to twice as much.
+    /// neighbours, along z up to twice as much, or any bound below 2^16.
     pub(crate) fn steepest(&self, net: SurfaceNet<'_>) -> u32 {
         let (points, (m, h)) = (net.points(), net.degrees());
         let z = |p: &Point3| short(p, 2);
+        let degree = m.max(h) as u32;
+        let xy = self.largest();
+        // Neighbours are at most twice as far apart as all are from one of them.
+        let start = points.first().map_or(0, z);
+        let far = points.iter().fold(0, |all, p| all | (z(p) - start) ^ ((z(p) - start) >> 31)) as u32;
+        let most = (2 * far + 2) * degree;
+        if most < 1 << 16 {
+            return most.max(xy[0]).max(xy[1]);
+        }
         let mut all = 0;
         let mut take = |p: &Point3, q: &Point3| all |= (z(p) - z(q)) ^ ((z(p) - z(q)) >> 31);
         points.iter().zip(points.get(h + 1..).unwrap_or_default()).for_each(|(p, q)| take(p, q));
@@ -145,8 +154,7 @@ impl PieceSlopes {
             row.iter().zip(row.get(1..).unwrap_or_default()).for_each(|(p, q)| take(p, q));
         }
         // One more than all bits that differences have; and one unit that each may be off.
-        let xy = self.largest();
-        ((all as u32 + 2) * m.max(h) as u32).max(xy[0]).max(xy[1])
+        ((all as u32 + 2) * degree).max(xy[0]).max(xy[1])
     }
 
     /// The larger of x and y, for each family of net edges.
@@ -239,9 +247,12 @@ fn tensor_steps(points: &[Point3], degrees: (usize, usize), a: u32, b: u32, slac
     let [room_r, room_s] = scaled.map(|n| slack.less(n));
     let enough = along_r * along_s;
     let mut diagonals = [Diagonal::default(); 2];
+    // In memory: as variables, which of the two it is would be asked for at every step.
+    let both = core::hint::black_box(&mut diagonals);
+    let up = MAX_DEGREE as u32 + (1 << shift);
     let pair = |by_r: i32, by_s: i32| {
-        let [p, q] = [by_r, by_s].map(|slope| ((slope.unsigned_abs() + MAX_DEGREE as u32) >> shift) + 1);
-        let diagonal = &mut diagonals[usize::from((by_r < 0) == (by_s < 0))];
+        let [p, q] = [by_r, by_s].map(|slope| (slope.unsigned_abs() + up) >> shift);
+        let diagonal = &mut both[usize::from(by_r ^ by_s >= 0)];
         // Most pairs ask for less than one before.
         if p <= diagonal.largest[0] && q <= diagonal.largest[1] {
             return;
@@ -289,10 +300,12 @@ fn each_bicubic_pair(points: &[Point3; 16], mut f: impl FnMut(i32, i32)) {
         for (by_s, row) in by_s.iter_mut().zip(values.as_chunks::<4>().0) {
             *by_s = elevated(*row);
         }
-        for j in 0..4 {
-            let by_r = elevated([values[j], values[4 + j], values[8 + j], values[12 + j]]);
-            for i in 0..4 {
-                f(by_r[i], by_s[i][j]);
+        // Corners first: there slopes are often largest. Masked, so that no check is left at any level of optimisation.
+        for j in [0, 3, 1, 2] {
+            let value = |i: usize| values[(4 * i + j) & 15];
+            let by_r = elevated([value(0), value(1), value(2), value(3)]);
+            for i in [0, 3, 1, 2] {
+                f(by_r[i & 3], by_s[i & 3][j & 3]);
             }
         }
     }

@@ -2,10 +2,10 @@
 
 use super::depth::DepthWindow;
 use super::light::{Light, Side, normal_on};
-use super::pen::{Brush, Spot, Stain};
+use super::pen::{Brush, Seen, Spot, Stain};
 use super::style::Style;
 use super::tangents::Tangents;
-use super::tile::{Fragment, Paint};
+use super::tile::{Area, Fragment, Paint};
 
 /// What the levels of a scene depend on.
 #[derive(Clone, Copy, Debug)]
@@ -36,10 +36,15 @@ pub(super) struct Canvas<'c, P: Paint> {
 }
 
 impl<P: Paint> Stain for Canvas<'_, P> {
+    #[inline(always)]
     fn stain(&mut self, index: usize, [x, y]: [i32; 2], shade: u8) {
         if let Some(stored) = self.colour.get_mut(index) {
             *stored = self.paint.pixel(Fragment { x, y, patch: self.patch, shade });
         }
+    }
+
+    fn stain_all(&mut self, area: &Area, points: &Seen<'_>) {
+        points.each(area, |index, at, shade| self.stain(index, at, shade));
     }
 }
 

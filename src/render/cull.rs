@@ -45,19 +45,25 @@ impl Cone {
     fn around(middle: Vector, each: impl Iterator<Item = Vector>) -> Option<Self> {
         let mut cone: Option<Self> = None;
         for v in each {
-            if dot(middle, v) <= 0 {
+            let Some(Self { right, left }) = &mut cone else {
+                if dot(middle, v) > 0 {
+                    cone = Some(Self { right: v, left: v });
+                } else if v != [0; 2] {
+                    return None;
+                }
+                continue;
+            };
+            let (is_left, is_right) = (cross(*left, v) > 0, cross(v, *right) > 0);
+            // Neither: it is in the cone, or the cone is a ray, and it may point the other way.
+            if (is_left || is_right || right == left) && dot(middle, v) <= 0 {
                 if v == [0; 2] {
                     continue;
                 }
                 return None;
             }
-            let Some(Self { right, left }) = &mut cone else {
-                cone = Some(Self { right: v, left: v });
-                continue;
-            };
-            if cross(*left, v) > 0 {
+            if is_left {
                 *left = v;
-            } else if cross(v, *right) > 0 {
+            } else if is_right {
                 *right = v;
             }
         }

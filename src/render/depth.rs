@@ -35,15 +35,23 @@ impl DepthWindow {
         depth.min(Self::LARGEST.into()) as u16
     }
 
-    /// The depth of ⌊2^bits·z⌋, given in two parts: whole units, and the rest, of any size. `INSIDE`: both [are
+    /// The depth of ⌊2^bits·z⌋, given in two parts: whole units, and the rest, of any size.
+    #[inline(always)]
+    pub(super) fn depth_of_parts(self, whole: i32, rest: i32) -> u16 {
+        let depth = self.parts_of_whole(whole).wrapping_add(rest);
+        (depth.max(0) >> self.drop).min(Self::LARGEST.into()) as u16
+    }
+
+    /// What the rest is added to: all of it, where [`is_whole`](Self::is_whole) and depths [are
     /// within](Self::is_within).
     #[inline(always)]
-    pub(super) fn depth_of_parts<const INSIDE: bool>(self, whole: i32, rest: i32) -> u16 {
-        let depth = (whole << self.bits).wrapping_sub(self.offset).wrapping_add(rest);
-        if INSIDE {
-            return (depth as u32 >> self.drop) as u16;
-        }
-        (depth.max(0) >> self.drop).min(Self::LARGEST.into()) as u16
+    pub(super) fn parts_of_whole(self, whole: i32) -> i32 {
+        (whole << self.bits).wrapping_sub(self.offset)
+    }
+
+    /// Whether depths keep all their bits.
+    pub(super) fn is_whole(self) -> bool {
+        self.drop == 0
     }
 
     /// Whether the depth of these parts, or of a unit more or less, is in the window.

@@ -5,13 +5,14 @@ use super::brush::{Shader, Shading};
 use super::cubic;
 use super::cull::{Facing, facing};
 use super::light::Side;
+use super::notes::Notes;
 use super::pen::{Ink, Pen, Rows, Stain};
-use super::pieces::{Pieces, Wanted, each_piece};
+use super::pieces::{Pieces, Reach, Verdict, Wanted, each_piece};
 use super::plan::{Plan, each_lattice};
 use super::style::Cull;
 use super::tangents::Tangents;
 use super::tile::Area;
-use crate::forward::{Fraction, Kind, PieceSlopes, Sampling};
+use crate::forward::{Fraction, Kind, Sampling};
 use crate::geometry::Point3;
 use crate::patch::{Surface, SurfaceNet};
 use core::marker::PhantomData;
@@ -28,6 +29,8 @@ pub(super) struct Drawing<'d> {
     pub(super) depth: &'d mut [u16],
     pub(super) stain: &'d mut dyn Stain,
     pub(super) statistics: &'d mut Statistics,
+    /// What the band before found out, where bands of a frame are drawn one after the other.
+    pub(super) notes: Option<&'d mut Notes>,
 }
 
 /// How a patch is drawn. Scenes hold such functions: what no scene of a program can draw by is not linked.
@@ -40,20 +43,30 @@ pub(super) fn fill<S: Surface>(drawing: &mut Drawing<'_>) {
     each_piece::<S>(drawing.net, &mut Filling::<S> { kind: PhantomData, drawing, is_wide });
 }
 
-/// Whether control values have pixels in `length` pixels from `start` on.
+/// The first and the last pixel of control values.
 #[inline(always)]
-fn overlaps(values: impl Iterator<Item = i32>, start: i32, length: u32) -> bool {
+fn span(values: impl Iterator<Item = i32>) -> [i32; 2] {
     let (low, high) = values.fold((i32::MAX, i32::MIN), |(low, high), c| (low.min(c), high.max(c)));
     // Rounded half up; legal coordinates leave room.
-    let [low, high] = [low, high].map(|c| (c + (1 << 15)) >> 16);
-    high >= start && i64::from(low) < i64::from(start) + i64::from(length)
+    [low, high].map(|c| (c + (1 << 15)) >> 16)
 }
 
-/// Whether the box of a piece has pixels in an area; `is_wide`: it may be beside it.
-fn meets(piece: SurfaceNet<'_>, area: &Area, is_wide: bool) -> bool {
+/// Where the box of a piece is in an area; `is_wide`: it may be beside it.
+fn reach(piece: SurfaceNet<'_>, area: &Area, is_wide: bool) -> Option<Reach> {
     let points = piece.points().iter();
-    overlaps(points.clone().map(|p| p.y.to_bits()), area.y, area.height)
-        && (!is_wide || overlaps(points.map(|p| p.x.to_bits()), area.x, area.width))
+    let end = |start: i32, length: u32| i64::from(start) + i64::from(length);
+    let [first, last] = span(points.clone().map(|p| p.y.to_bits()));
+    let bottom = end(area.y, area.height);
+    if last < area.y || i64::from(first) >= bottom {
+        return None;
+    }
+    if is_wide {
+        let [first, last] = span(points.map(|p| p.x.to_bits()));
+        if last < area.x || i64::from(first) >= end(area.x, area.width) {
+            return None;
+        }
+    }
+    Some(Reach { is_old: first < area.y, goes_on: i64::from(last) >= bottom })
 }
 
 /// Whether a patch may have points in columns outside an area.
@@ -74,6 +87,9 @@ struct Filling<'f, 'd, S> {
 }
 
 impl<S: Surface> Filling<'_, '_, S> {
+    /// Whether all pieces are such that what is done with them fits a note.
+    const IS_NOTED: bool = !S::SHAPE.triangles && !S::SHAPE.rational && S::SHAPE.degree <= 3;
+
     /// Which way normals point; a tensor-product lattice that is turned has its tangents exchanged.
     fn side(&self, is_turned: bool) -> Side {
         match (self.drawing.cull, self.drawing.inward != is_turned) {
@@ -85,9 +101,9 @@ impl<S: Surface> Filling<'_, '_, S> {
 
     /// Draws a piece of degree 3 or less.
     #[inline(never)]
-    fn cubic(&mut self, net: SurfaceNet<'_>, sampling: Sampling, slopes: &PieceSlopes) {
-        let turn = slopes.turn(false, sampling.centres);
-        let piece = cubic::Piece::new(net, (sampling.steps.r(), sampling.steps.s()), turn, slopes.steepest(net));
+    fn cubic(&mut self, net: SurfaceNet<'_>, (sampling, turn, steepest): (Sampling, u8, u32)) {
+        let mut piece = cubic::Piece::blank(net, (sampling.steps.r(), sampling.steps.s()), turn);
+        piece.set_up::<true>(steepest);
         let side = self.side(turn == 1);
         let mut target = cubic::Target {
             area: self.drawing.area,
@@ -128,11 +144,24 @@ impl<S: Surface> Filling<'_, '_, S> {
 }
 
 impl<S: Surface> Pieces for Filling<'_, '_, S> {
-    fn wants(&mut self, piece: SurfaceNet<'_>, is_front: bool) -> Wanted {
-        if !meets(piece, &self.drawing.area, self.is_wide) {
-            return Wanted::No;
+    fn reach(&mut self, piece: SurfaceNet<'_>) -> Option<Reach> {
+        reach(piece, &self.drawing.area, self.is_wide)
+    }
+
+    fn recall(&mut self) -> Option<Verdict> {
+        if Self::IS_NOTED { self.drawing.notes.as_mut()?.recall() } else { None }
+    }
+
+    fn keep(&mut self, verdict: &Verdict) {
+        if Self::IS_NOTED
+            && let Some(notes) = &mut self.drawing.notes
+        {
+            notes.keep(verdict);
         }
-        if self.drawing.cull == Cull::None || is_front {
+    }
+
+    fn wants(&mut self, piece: SurfaceNet<'_>) -> Wanted {
+        if self.drawing.cull == Cull::None {
             return Wanted::Front;
         }
         match facing(&piece, self.drawing.inward) {
@@ -142,13 +171,13 @@ impl<S: Surface> Pieces for Filling<'_, '_, S> {
         }
     }
 
-    fn piece(&mut self, piece: SurfaceNet<'_>, sampling: Sampling, slopes: &PieceSlopes, room: &mut [Point3]) {
+    fn piece(&mut self, piece: SurfaceNet<'_>, way: (Sampling, u8, u32), room: &mut [Point3]) {
         self.drawing.statistics.pieces += 1;
         if cubic::suits::<S>(&piece) {
-            return self.cubic(piece, sampling, slopes);
+            return self.cubic(piece, way);
         }
         // Checked in `new`, so it cannot fail here.
-        let _ = each_lattice::<S>(piece, sampling, room, &mut |plan, halvings| self.lattice(piece, plan, halvings));
+        let _ = each_lattice::<S>(piece, way.0, room, &mut |plan, halvings| self.lattice(piece, plan, halvings));
     }
 
     fn split(&mut self) {

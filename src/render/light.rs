@@ -98,16 +98,40 @@ impl Light {
 }
 
 impl Light {
+    /// The light from the other side.
+    #[inline(always)]
+    pub(super) fn reversed(&self) -> Self {
+        Self { direction: self.direction.map(|c| -c), ambient: self.ambient }
+    }
+
+    /// [`level`](Self::level) of this normal, or of the one that points the other way, where its largest component has 15
+    /// bits.
+    #[inline(always)]
+    pub(super) fn level_of_turned(&self, [x, y, z]: [i32; 3], turned: bool) -> u8 {
+        let [a, b, c] = self.direction;
+        let along = x * a + y * b + z * c;
+        let along = if turned { -along } else { along };
+        if along <= 0 {
+            return self.ambient;
+        }
+        self.ambient.saturating_add(self.above(along as u32, (x * x) as u32 + (y * y) as u32 + (z * z) as u32))
+    }
+
+    /// What a normal adds to the ambient level, from its product with the direction and its square.
+    #[inline(always)]
+    fn above(&self, along: u32, square: u32) -> u8 {
+        let (root, half) = reciprocal_root(square);
+        // The normal is shorter than 2^half: the product is at most 2^31, and the cosine's in 2^-31.
+        let cosine = (along >> (half.max(1) - 1)).wrapping_mul(root) >> 16;
+        ((u32::from(255 - self.ambient) * cosine + (1 << 14)) >> 15) as u8
+    }
+
     /// The level of a surface with this normal vector of components of at most 2^15 on the side that the light reaches,
     /// without a division and within 1 of the exact one; and whether that is the side to which it points.
     pub(super) fn level_of_lit_side(&self, normal: [i32; 3]) -> (u8, bool) {
         let dot = normal.iter().zip(&self.direction).map(|(n, l)| n * l).sum::<i32>();
         let square: u32 = normal.iter().map(|n| n.unsigned_abs().pow(2)).sum();
-        let (root, half) = reciprocal_root(square.max(1));
-        // The normal is shorter than 2^half: the product is at most 2^31, and the cosine's in 2^-31.
-        let cosine = (dot.unsigned_abs() >> (half.max(1) - 1)).wrapping_mul(root) >> 16;
-        let above = (u32::from(255 - self.ambient) * cosine + (1 << 14)) >> 15;
-        (self.ambient.saturating_add(above as u8), dot >= 0)
+        (self.ambient.saturating_add(self.above(dot.unsigned_abs(), square.max(1))), dot >= 0)
     }
 }
 

@@ -79,6 +79,7 @@ mod frame;
 mod grid;
 mod light;
 mod lines;
+mod notes;
 mod pen;
 mod pieces;
 mod plan;
@@ -93,6 +94,7 @@ mod tests;
 pub use frame::{Band, Frame, Statistics};
 pub use grid::Facet;
 pub use light::Light;
+pub use notes::Notes;
 pub use pieces::stack_bytes;
 pub use scene::Scene;
 #[cfg(feature = "styled")]

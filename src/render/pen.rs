@@ -39,6 +39,34 @@ pub(super) trait Brush {
 pub(super) trait Stain {
     /// Colours the pixel (x, y), number `index` of the tile.
     fn stain(&mut self, index: usize, at: [i32; 2], shade: u8);
+
+    /// Colours pixels of a tile.
+    fn stain_all(&mut self, area: &Area, points: &Seen<'_>);
+}
+
+/// Points of a run that are seen.
+#[derive(Debug)]
+pub(super) struct Seen<'r> {
+    /// The index in the tile of each point of the run.
+    pub(super) index: &'r [u32],
+    /// Those that are seen, by how many of the run come after, and their levels.
+    pub(super) seen: &'r [u8],
+    pub(super) levels: &'r [u8],
+}
+
+impl Seen<'_> {
+    /// Calls `f` with index, place and level of each point that is seen.
+    #[inline(always)]
+    pub(super) fn each(&self, area: &Area, mut f: impl FnMut(usize, [i32; 2], u8)) {
+        for (k, level) in self.seen.iter().zip(self.levels) {
+            let k = self.index.len().wrapping_sub(1).wrapping_sub(usize::from(*k));
+            if let Some(index) = self.index.get(k) {
+                let row = index.checked_div(area.width).unwrap_or(0);
+                let column = index.wrapping_sub(row.wrapping_mul(area.width));
+                f(*index as usize, [area.x.wrapping_add_unsigned(column), area.y.wrapping_add_unsigned(row)], *level);
+            }
+        }
+    }
 }
 
 /// Draws the points of one lattice into a tile. One type for all colours: what a walker is made for.

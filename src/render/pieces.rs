@@ -10,7 +10,7 @@ use crate::forward::{Estimate, PieceSlopes, Sampling};
 use crate::geometry::Point3;
 use crate::num::I16F16;
 use crate::patch::{MAX_DEGREE, Surface, SurfaceNet};
-use crate::subdivide::{Cut, Direction, Half, Quarter, Source, part_net};
+use crate::subdivide::{Cut, Direction, Half, Quarter, Source, are_near, part_net};
 
 /// The most points of a polynomial tensor-product piece: with more, points are wasted where a piece is short; with fewer,
 /// setting up pieces costs more than the points that it saves.
@@ -47,13 +47,58 @@ pub(super) enum Wanted {
     Front,
 }
 
+/// What is done with a piece.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    /// It is not looked at, nor are its parts.
+    Leave,
+    Split(Split),
+    /// By this lattice, of which a polynomial tensor product of degree 3 or less is turned so; the steepest derivative of
+    /// that is at most so many 2^-9.
+    Draw {
+        sampling: Sampling,
+        turn: u8,
+        steepest: u32,
+    },
+}
+
+/// What is done with a piece, and whether it faces the viewer everywhere, as far as is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Verdict {
+    pub(super) way: Way,
+    pub(super) is_front: bool,
+}
+
+impl Verdict {
+    /// How much steeper than this a piece is makes a difference, and not how much less.
+    pub(super) const SLOW: u32 = 1 << 16;
+}
+
+/// Where a piece is that is met by a band.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Reach {
+    /// Whether it was met by the band before.
+    pub(super) is_old: bool,
+    /// Whether the next one meets it.
+    pub(super) goes_on: bool,
+}
+
 /// What is done with pieces.
 pub(super) trait Pieces {
-    /// Whether a piece is looked at at all; `is_front`: it is a part of one that faces the viewer everywhere.
-    fn wants(&mut self, piece: SurfaceNet<'_>, is_front: bool) -> Wanted;
+    /// Where a piece is; `None` where it is not met.
+    fn reach(&mut self, piece: SurfaceNet<'_>) -> Option<Reach>;
 
-    /// A piece that is not split any further, and room for as many points as it has.
-    fn piece(&mut self, piece: SurfaceNet<'_>, sampling: Sampling, slopes: &PieceSlopes, room: &mut [Point3]);
+    /// What the notes of a frame say of the next piece that is old.
+    fn recall(&mut self) -> Option<Verdict>;
+
+    /// Notes what is done with the next piece that goes on.
+    fn keep(&mut self, verdict: &Verdict);
+
+    /// Whether a piece is looked at at all.
+    fn wants(&mut self, piece: SurfaceNet<'_>) -> Wanted;
+
+    /// A piece that is not split any further, [a way to draw it](Way::Draw), and room for as many points as it has.
+    fn piece(&mut self, piece: SurfaceNet<'_>, way: (Sampling, u8, u32), room: &mut [Point3]);
 
     /// Called when a piece is split.
     fn split(&mut self);
@@ -63,13 +108,13 @@ pub(super) trait Pieces {
 ///
 /// A net for each level of splitting, 7 of 16 or 21 points or 9 of more, 12 bytes a point (16 with weights); the walk with
 /// its difference table: 1.7 KB up to degree 3, 4.3 KB up to 5, 6.6 KB for triangles and 13 KB for tensor products above,
-/// 5.5 KB for rational patches up to degree 3 and 20.5 KB above; 2.4 KB for the rest. `examples/fw_stack.rs` measures it.
+/// 5.5 KB for rational patches up to degree 3 and 20.5 KB above; 1.9 KB for the rest. `examples/fw_stack.rs` measures it.
 ///
 /// ```
 /// use embedded_surfaces::patch::{BicubicPatch, Surface};
 /// use embedded_surfaces::render::stack_bytes;
 /// const FLAT: BicubicPatch = embedded_surfaces::const_net!(BicubicPatch::from_ints([[[0; 3]; 4]; 4]));
-/// assert_eq!(stack_bytes(FLAT.surface()), 5394);
+/// assert_eq!(stack_bytes(FLAT.surface()), 4944);
 /// ```
 #[must_use]
 pub const fn stack_bytes(net: SurfaceNet<'_>) -> usize {
@@ -85,7 +130,7 @@ pub const fn stack_bytes(net: SurfaceNet<'_>) -> usize {
         _ if net.is_triangle() => 6600,
         _ => 13_000,
     };
-    (depth + 1) * len * if rational { 16 } else { 12 } + walk + 2400
+    (depth + 1) * len * if rational { 16 } else { 12 } + walk + 1950
 }
 
 /// Walks the pieces of a patch.
@@ -124,13 +169,14 @@ fn with_room<S: Surface, const LEN: usize, const WEIGHTS: usize, const SLOTS: us
         depth: 0,
         deepest: SLOTS - 1,
         front: 0,
+        is_near: are_near(net.points()),
     };
     tree.walk::<S>(pieces);
 }
 
 /// How a piece is split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Split {
+pub(super) enum Split {
     R,
     S,
     Squares,
@@ -164,6 +210,8 @@ struct Tree<'n, 's> {
     deepest: usize,
     /// A bit for each depth: whether the piece there is known to face the viewer.
     front: u16,
+    /// Whether the points of the root, and so those of its parts, [are near](are_near).
+    is_near: bool,
 }
 
 impl Tree<'_, '_> {
@@ -183,15 +231,40 @@ impl Tree<'_, '_> {
 
     /// Draws the current piece, or says how it is split.
     fn visit<S: Surface>(&mut self, pieces: &mut dyn Pieces) -> Option<Split> {
-        let (depth, deepest) = (self.depth, self.deepest);
-        // That of the piece above stands one bit lower.
-        let (own, is_front) = (2_u16 << depth, self.front >> depth & 1 == 1);
-        let wanted = pieces.wants(self.current().0, is_front);
-        self.front = if wanted == Wanted::Front { self.front | own } else { self.front & !own };
-        if wanted == Wanted::No {
-            return None;
+        let reach = pieces.reach(self.current().0)?;
+        let noted = if reach.is_old { pieces.recall() } else { None };
+        let verdict = match noted {
+            Some(verdict) => verdict,
+            None => self.judge::<S>(pieces),
+        };
+        if reach.goes_on {
+            pieces.keep(&verdict);
         }
+        // That of the piece above stands one bit lower.
+        let own = 2_u16 << self.depth;
+        self.front = if verdict.is_front { self.front | own } else { self.front & !own };
+        match verdict.way {
+            Way::Leave => None,
+            Way::Split(split) => Some(split),
+            Way::Draw { sampling, turn, steepest } => {
+                let (piece, slot, _) = self.current();
+                pieces.piece(piece, (sampling, turn, steepest), slot);
+                None
+            }
+        }
+    }
+
+    /// What is to be done with the current piece. Out of line: its stack is free again when a piece is drawn.
+    #[inline(never)]
+    fn judge<S: Surface>(&mut self, pieces: &mut dyn Pieces) -> Verdict {
+        let (depth, deepest) = (self.depth, self.deepest);
+        let is_front = self.front >> depth & 1 == 1;
         let (piece, slot, weight_slot) = self.current();
+        let wanted = if is_front { Wanted::Front } else { pieces.wants(piece) };
+        let verdict = |way: Way| Verdict { way, is_front: wanted == Wanted::Front };
+        if wanted == Wanted::No {
+            return verdict(Way::Leave);
+        }
         let slopes = PieceSlopes::of(piece);
         let (triangles, rational) =
             (S::SHAPE.triangles && piece.is_triangle(), S::SHAPE.rational && piece.weights().is_some());
@@ -199,7 +272,7 @@ impl Tree<'_, '_> {
         // Up to degree 3 any legal net fits 128 bits: (n_r·n_s)^3·2^7·(2K+1) with n below 2^19.
         let fits_always = direct && (S::SHAPE.degree <= 3 || degree(&piece) <= 3);
         if depth < deepest && fits_always && slopes.least_points() > LARGEST {
-            return Some(halves_of(&slopes));
+            return verdict(Way::Split(halves_of(&slopes)));
         }
         let sampling = slopes.sampling::<S>(piece, true);
         let split = if depth == deepest {
@@ -212,10 +285,13 @@ impl Tree<'_, '_> {
         } else {
             split_that_pays::<S>(source(piece, depth), sampling, slot, weight_slot)
         };
-        if split.is_none() {
-            pieces.piece(piece, sampling, &slopes, slot);
-        }
-        split
+        verdict(match split {
+            Some(split) => Way::Split(split),
+            None if fits_always => {
+                Way::Draw { sampling, turn: slopes.turn(false, sampling.centres), steepest: slopes.steepest(piece) }
+            }
+            None => Way::Draw { sampling, turn: 0, steepest: 0 },
+        })
     }
 
     /// The current piece, and the slots after it.
@@ -240,8 +316,9 @@ impl Tree<'_, '_> {
         let Some(level) = self.depth.checked_sub(1) else { return false };
         let Some(part) = self.path.get(level).and_then(|(split, part)| split.part(*part)) else { return false };
         self.depth = level;
+        let is_near = self.is_near;
         let (parent, slot, weight_slot) = self.current();
-        source(parent, level).1.cut_of::<S>(part, slot, weight_slot);
+        source(parent, level).1.known_near(is_near).cut_of::<S>(part, slot, weight_slot);
         self.depth = level + 1;
         true
     }

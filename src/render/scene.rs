@@ -8,6 +8,7 @@ use super::light::Light;
 #[cfg(feature = "styled")]
 use super::lines::any_family;
 use super::lines::{draw_lines, families, family};
+use super::notes::Notes;
 use super::pen::Ink;
 use super::plan::check_pieces;
 use super::style::{Cull, Fill, Style};
@@ -276,20 +277,31 @@ impl<'a, S: Surface> Scene<'a, S> {
     /// Cost: the points of the pieces that meet the tile, or the facets of the grid. Stack:
     /// [`stack_bytes`](super::stack_bytes) of the largest patch.
     pub fn draw<P: Paint>(&self, tile: &mut Tile<'_, P::Pixel>, paint: &P) -> Statistics {
+        self.draw_noted(tile, paint, None)
+    }
+
+    /// The same for the next band of a frame, with its notes.
+    #[inline(always)]
+    pub(super) fn draw_noted<P: Paint>(
+        &self,
+        tile: &mut Tile<'_, P::Pixel>,
+        paint: &P,
+        mut notes: Option<&mut Notes>,
+    ) -> Statistics {
         let mut statistics = Statistics::default();
         if self.style.lines() == Some(true) {
             self.each_visible(tile, |tile, patch| {
-                self.trace(self.fill, tile, paint, patch, Ink::Occlude, &mut statistics);
+                self.trace(self.fill, tile, paint, patch, Ink::Occlude, (&mut statistics, notes.as_deref_mut()));
             });
         }
         self.each_visible(tile, |tile, index| {
             statistics.patches += 1;
             if self.style.lines().is_some() {
-                self.trace(self.lines, tile, paint, index, Ink::Fill, &mut statistics);
+                self.trace(self.lines, tile, paint, index, Ink::Fill, (&mut statistics, None));
             } else if let Some(patch) = self.grid_patch(index) {
                 statistics += self.fill_facets(tile, paint, &patch);
             } else {
-                self.trace(self.fill, tile, paint, index, Ink::Fill, &mut statistics);
+                self.trace(self.fill, tile, paint, index, Ink::Fill, (&mut statistics, notes.as_deref_mut()));
             }
         });
         statistics
@@ -320,7 +332,7 @@ impl<'a, S: Surface> Scene<'a, S> {
         paint: &P,
         patch: usize,
         ink: Ink,
-        statistics: &mut Statistics,
+        (statistics, notes): (&mut Statistics, Option<&mut Notes>),
     ) {
         let (Some(draw), Some(surface)) = (draw, self.patches.get(patch)) else { return };
         let (area, colour, depth) = tile.parts();
@@ -334,6 +346,7 @@ impl<'a, S: Surface> Scene<'a, S> {
             depth,
             stain: &mut Canvas { paint, patch, colour },
             statistics,
+            notes,
         });
     }
 }

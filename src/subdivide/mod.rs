@@ -60,4 +60,4 @@ pub use tessellate::{
 };
 pub use topology::{PatchTopology, topology};
 
-pub(crate) use rounded::{Cut, Source, part_net};
+pub(crate) use rounded::{Cut, Source, are_near, part_net};

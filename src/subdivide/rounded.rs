@@ -51,11 +51,13 @@ pub(crate) struct Source<'a> {
     weights: Option<&'a [I16F16]>,
     /// Weights of parts are multiplied by two to this power: surfaces do not change by it, roundings do.
     doublings: i32,
+    /// Whether all points are less than 2048 units apart along each axis.
+    is_near: bool,
 }
 
 impl<'a> Source<'a> {
     pub(crate) fn new(degrees: (usize, usize), points: &'a [Point3], weights: Option<&'a [I16F16]>) -> Self {
-        Self { degrees, points, weights, doublings: 0 }
+        Self { degrees, points, weights, doublings: 0, is_near: false }
     }
 
     pub(crate) fn of(net: SurfaceNet<'a>) -> Self {
@@ -69,6 +71,11 @@ impl<'a> Source<'a> {
         let length = |w: Option<&I16F16>| 32 - w.map_or(1, |w| w.to_bits()).leading_zeros() as i32;
         let (longest, shortest) = (length(weights.iter().max()), length(weights.iter().min()));
         Self { doublings: (17 + longest - shortest).min(31) - longest, ..self }
+    }
+
+    /// The source for which it is known that [`are_near`] says so of it, or of what it was cut from.
+    pub(crate) fn known_near(self, is_near: bool) -> Self {
+        Self { is_near, ..self }
     }
 
     /// Writes the points of the part into `points` and, for a rational net, its weights into `weights`; both hold as
@@ -97,27 +104,11 @@ impl<'a> Source<'a> {
         let (Some(from), Some(to)) = (self.points.first_chunk::<16>(), points.first_chunk_mut::<16>()) else {
             return false;
         };
-        if self.degrees != (3, 3) {
+        if self.degrees != (3, 3) || !(self.is_near || are_near(self.points)) {
             return false;
         }
-        let (along, across) = if direction == Direction::R { (4, 1) } else { (1, 4) };
-        // From the far end for the second half.
-        let (start, step) = if half == Half::First { (0, along) } else { (3 * along, 0_usize.wrapping_sub(along)) };
-        let mut far = 0;
-        for row in 0..4 {
-            let place = |k: usize| start.wrapping_add(row * across).wrapping_add(k.wrapping_mul(step)) & 15;
-            let places = [place(0), place(1), place(2), place(3)];
-            // Masked where they are used: no check is left at any level of optimisation.
-            let at = |k: usize| &from[places[k & 3] & 15];
-            let [a, b, c, d] = [at(0), at(1), at(2), at(3)];
-            let x = cubic_half([a.x, b.x, c.x, d.x].map(I16F16::to_bits), &mut far);
-            let y = cubic_half([a.y, b.y, c.y, d.y].map(I16F16::to_bits), &mut far);
-            let z = cubic_half([a.z, b.z, c.z, d.z].map(I16F16::to_bits), &mut far);
-            for k in 0..4 {
-                to[places[k] & 15] = Point3::from_bits(x[k], y[k], z[k]);
-            }
-        }
-        far == 0
+        halve_bicubic(from, direction, half, to);
+        true
     }
 
     #[inline(never)]
@@ -164,15 +155,45 @@ impl<'a> Source<'a> {
     }
 }
 
-/// The first half of a cubic, rounded half up: sums are taken from the first value, so they fit 32 bits where no other is
-/// 2048 units away. Else `far` is not 0.
+/// Whether points are less than 2048 units apart along each axis: differences then have 27 bits and a sign.
+pub(crate) fn are_near(points: &[Point3]) -> bool {
+    let Some(first) = points.first().map(|p| p.to_array().map(I16F16::to_bits)) else { return true };
+    let mut far = 0;
+    for p in points {
+        for (c, start) in p.to_array().map(I16F16::to_bits).into_iter().zip(first) {
+            // A magnitude, or one less; and whether the difference did not fit, which then has the wrong sign.
+            let apart = c.wrapping_sub(start);
+            far |= (apart ^ (apart >> 31)) >> 26 | ((c ^ start) & (c ^ apart)) >> 31;
+        }
+    }
+    far == 0
+}
+
+/// A half of a bicubic whose points [are near](are_near).
+#[inline(never)]
+fn halve_bicubic(from: &[Point3; 16], direction: Direction, half: Half, to: &mut [Point3; 16]) {
+    let (along, across) = if direction == Direction::R { (4, 1) } else { (1, 4) };
+    // From the far end for the second half.
+    let (start, step) = if half == Half::First { (0, along) } else { (3 * along, 0_usize.wrapping_sub(along)) };
+    for row in 0..4 {
+        let place = |k: usize| start.wrapping_add(row * across).wrapping_add(k.wrapping_mul(step)) & 15;
+        let places = [place(0), place(1), place(2), place(3)];
+        // Masked where they are used: no check is left at any level of optimisation.
+        let at = |k: usize| &from[places[k & 3] & 15];
+        let [a, b, c, d] = [at(0), at(1), at(2), at(3)];
+        let x = cubic_half([a.x, b.x, c.x, d.x].map(I16F16::to_bits));
+        let y = cubic_half([a.y, b.y, c.y, d.y].map(I16F16::to_bits));
+        let z = cubic_half([a.z, b.z, c.z, d.z].map(I16F16::to_bits));
+        for k in 0..4 {
+            to[places[k] & 15] = Point3::from_bits(x[k], y[k], z[k]);
+        }
+    }
+}
+
+/// The first half of a cubic, rounded half up: sums are taken from the first value.
 #[inline(always)]
-fn cubic_half([a, b, c, d]: [i32; 4], far: &mut i32) -> [i32; 4] {
+fn cubic_half([a, b, c, d]: [i32; 4]) -> [i32; 4] {
     let [u, v, w] = [b.wrapping_sub(a), c.wrapping_sub(a), d.wrapping_sub(a)];
-    // Magnitudes, or one less; and differences that did not fit, which have the wrong sign.
-    let magnitude = |v: i32| v ^ (v >> 31);
-    let wrapped = |p: i32, v: i32| (p ^ a) & (p ^ v);
-    *far |= (magnitude(u) | magnitude(v) | magnitude(w)) >> 27 | (wrapped(b, u) | wrapped(c, v) | wrapped(d, w)) >> 31;
     let two = u.wrapping_add(v);
     let sums = [
         u.wrapping_add(1) >> 1,

@@ -6,7 +6,7 @@ use super::{Digest, Sum, data, hide};
 use embedded_surfaces::forward::LatticeError;
 use embedded_surfaces::patch::{Surface, SurfaceNet};
 use embedded_surfaces::render::{
-    Area, Band, Cull, Fragment, Frame, Gloss, Light, Lines, Paint, RenderError, Scene, Statistics, Style, Tile,
+    Area, Band, Cull, Fragment, Frame, Gloss, Light, Lines, Notes, Paint, RenderError, Scene, Statistics, Style, Tile,
 };
 
 const SIDE: u32 = 64;
@@ -103,7 +103,8 @@ fn scene(sum: &mut Sum, patches: &[SurfaceNet<'_>], style: Style) {
 fn frame(sum: &mut Sum, scene: Scene<'_, SurfaceNet<'_>>, (colour, depth): (&mut [u16], &mut [u16])) {
     for (width, rows) in hide([(50, 11), (50, 0), (0, 3)]) {
         let area = Area { x: 3, y: 4, width, height: 40 };
-        let frame = Frame::new(scene, &Marked, hide(1), area, rows);
+        let mut notes = hide(Notes::EMPTY);
+        let frame = Frame::new(scene, &Marked, hide(1), area, rows).map(|frame| Frame::with_notes(frame, &mut notes));
         sum.add(frame.as_ref().map(Frame::band_pixels).map_err(|error| *error));
         let Ok(mut frame) = frame else { continue };
         sum.add(Frame::next_band(&mut frame, &mut [], depth).map(|_| ()));

@@ -1,18 +1,30 @@
 //! Corners of a grid: ⌊256·S⌋, exact on edges, within 1/128 pixel inside.
 //!
-//! On an edge, and at the ends of a row, values come from [`at`](super::at), less than 16 units off, and [`exact`](super::exact)
-//! decides where that is not enough: patches on both sides of an edge get equal bits. Inside, rows are walked by differences.
+//! On an edge, and at the ends of a row, values come from [`value_at`], less than 16 units off, and the edge's own control points
+//! decide where that is not enough: patches on both sides of an edge get equal bits. Inside, rows are walked by differences
+//! where values have bits enough.
+//! Wild nets, for which values have few bits, are exact inside, too.
 
-use super::run::Line;
 use super::slopes::{RowSlopes, Slopes};
-use super::{Parameters, Piece, at, scaled};
+use super::steps::value_at;
+use super::{Piece, RowCubic};
 use crate::patch::SurfaceNet;
 
 /// Fraction bits of corners.
 const CORNER: u32 = 8;
 
-/// What values may be off.
+/// What values may be off; and those of a net that was cut.
 const DOUBT: i32 = 16;
+const DOUBT_IF_CUT: i32 = 32;
+
+/// The least F, and the most segments of a row, for which values and parameters inside are off by less than 1/256 pixel where
+/// a segment has 32 pixels at most.
+const LEAST_BITS: u32 = 14;
+const MOST_SEGMENTS: u32 = 256;
+
+/// Walks of this many corners are less than 128 units off, 1/8 corner unit of values with at least this F.
+const RUN: usize = 16;
+const LEAST_TO_WALK: u32 = 18;
 
 /// Binomial coefficients of degree 3 and less.
 const CHOICES: [[u32; 4]; 4] = [[1, 0, 0, 0], [1, 1, 0, 0], [1, 2, 1, 0], [1, 3, 3, 1]];
@@ -25,9 +37,12 @@ pub(in crate::render) struct Corners<'n> {
     /// The whole corner units of the origin, and the rest in 2^-F.
     base: [i32; 3],
     fraction: [i32; 3],
-    /// F less [`CORNER`].
+    /// F less [`CORNER`], at least 1: values are doubled so many times before.
     shift: u32,
-    /// 2·[`DOUBT`] shifted left by 32 − `shift`; everything where even a whole unit is not sure.
+    doublings: u32,
+    /// What values may be off.
+    margin: i32,
+    /// Twice that shifted left by 32 − `shift`; everything where even a whole unit is not sure.
     doubt: u32,
 }
 
@@ -35,7 +50,7 @@ pub(in crate::render) struct Corners<'n> {
 #[derive(Clone, Copy, Debug)]
 pub(in crate::render) struct CornerRow {
     j: u32,
-    cubics: [[i32; 4]; 3],
+    cubics: [RowCubic; 3],
     /// The values at both ends.
     ends: [[i32; 2]; 3],
 }
@@ -44,17 +59,21 @@ impl<'n> Corners<'n> {
     /// The grid of a net with so many segments; rows run along s if `is_turned`.
     #[inline(always)]
     pub(in crate::render) fn new(net: SurfaceNet<'n>, steps: (u32, u32), is_turned: bool, steepest: u32) -> Self {
-        let piece = Piece::new(net, steps, u8::from(is_turned), steepest);
+        let mut piece = Piece::blank(net, steps, u8::from(is_turned));
+        piece.set_up::<true>(steepest);
         let start = piece.origin.map(|c| c - (1 << 15));
-        let (up, down) = (piece.bits.saturating_sub(16), 16_u32.saturating_sub(piece.bits));
+        let (up, less) = (piece.bits.saturating_sub(16), 16_u32.saturating_sub(piece.bits));
+        let margin = if piece.is_cut { DOUBT_IF_CUT } else { DOUBT };
         let shift = piece.bits.saturating_sub(CORNER).clamp(1, 31);
         Self {
             slopes: Slopes::of(&piece),
             piece,
             base: start.map(|c| c >> CORNER),
-            fraction: start.map(|c| (c & 255) >> down << up),
+            fraction: start.map(|c| (c & 255) >> less << up),
             shift,
-            doubt: if shift < 6 { u32::MAX } else { (2 * DOUBT.unsigned_abs()) << (32 - shift) },
+            doublings: (CORNER + 1).saturating_sub(piece.bits),
+            margin,
+            doubt: if shift < 7 { u32::MAX } else { (2 * margin.unsigned_abs()) << (32 - shift) },
         }
     }
 
@@ -62,41 +81,36 @@ impl<'n> Corners<'n> {
     #[inline(never)]
     pub(in crate::render) fn row(&self, j: u32) -> CornerRow {
         let s = self.piece.across.half(2 * j);
-        let controls = [self.piece.control(0, s), self.piece.control(1, s), self.piece.control(2, s)];
-        CornerRow {
-            j,
-            cubics: controls.map(|control| self.piece.row(control)),
-            ends: controls.map(|control| [control[0], control[self.piece.degrees[0] & 3]]),
-        }
+        let cubics = [self.piece.row(0, s), self.piece.row(1, s), self.piece.row(2, s)];
+        let end = |[start, slope, bend, last]: RowCubic| {
+            start.wrapping_add(slope >> 2).wrapping_add(bend >> 1).wrapping_add(last >> 1)
+        };
+        CornerRow { j, cubics, ends: cubics.map(|cubic| [cubic[0], end(cubic)]) }
     }
 
-    /// Whether a row is a side of the piece: all its corners are to be exact then, or else those at its ends.
+    /// Whether all corners of a row are to be exact, or else those at its ends: of a side of the piece, or of a wild net.
     #[inline(always)]
-    pub(in crate::render) fn is_edge(&self, row: &CornerRow) -> bool {
-        row.j == 0 || row.j == self.piece.across.steps
+    pub(in crate::render) fn is_exact(&self, row: &CornerRow) -> bool {
+        let is_wild = self.piece.bits < LEAST_BITS || self.piece.along.steps > MOST_SEGMENTS;
+        row.j == 0 || row.j == self.piece.across.steps || is_wild
     }
 
-    /// The exact corners from number `first` on of a row that is an edge.
+    /// The exact corners from number `first` on of a row.
     #[inline(always)]
-    pub(in crate::render) fn edge<T>(
+    pub(in crate::render) fn exact_row<T>(
         &self,
         row: &CornerRow,
         first: u32,
         out: &mut [T],
         set: impl Fn(&mut T, [i32; 3]),
     ) {
-        let cubics = row.cubics.map(scaled);
-        // As `half`, with the bits below 2^-31.
-        let Parameters { steps, factor, shift } = self.piece.along;
-        let step = u64::from(factor) << (33 - (shift & 15));
-        let mut all = step.wrapping_mul(first.into());
+        let (along, across) = (&self.piece.along, &self.piece.across);
         for (i, out) in (first..).zip(out) {
-            let t = (all >> 32) as i32;
-            all = all.wrapping_add(step);
-            if i == 0 || i == steps {
+            let t = along.half(2 * i);
+            if (i == 0 || i == along.steps) && (row.j == 0 || row.j == across.steps) {
                 set(out, self.tip([i, row.j]));
             } else {
-                let exact = |axis: usize| self.exact(axis, [i, row.j], at(&cubics[axis], t));
+                let exact = |axis: usize| self.exact(axis, [i, row.j], value_at(&row.cubics[axis], t));
                 set(out, [exact(0), exact(1), exact(2)]);
             }
         }
@@ -112,12 +126,23 @@ impl<'n> Corners<'n> {
         out: &mut [T],
         set: impl Fn(&mut T, i32),
     ) {
-        let (base, fraction) = (self.base[axis], self.fraction[axis]);
-        let mut line: Line = self.piece.line(&row.cubics[axis], self.piece.along.half(2 * first), fraction);
-        for out in out {
-            set(out, (line.value >> self.shift).wrapping_add(base));
-            line.step();
-            core::hint::black_box(());
+        let (base, fraction, along) = (self.base[axis], self.fraction[axis], &self.piece.along);
+        let corner = |value: i32| (value << self.doublings >> self.shift).wrapping_add(base);
+        let cubic = &row.cubics[axis];
+        if self.piece.bits < LEAST_TO_WALK {
+            for (i, out) in (first..).zip(out) {
+                set(out, corner(value_at(cubic, along.half(2 * i)).wrapping_add(fraction)));
+            }
+            return;
+        }
+        for (k, run) in (0..).zip(out.chunks_mut(RUN)) {
+            let start = first.wrapping_add(k * RUN as u32);
+            let mut line = self.piece.differences.line(cubic, along.half(2 * start), fraction);
+            for out in run {
+                set(out, corner(line.value));
+                line.step();
+                core::hint::black_box(());
+            }
         }
     }
 
@@ -137,12 +162,12 @@ impl<'n> Corners<'n> {
         [point.x, point.y, point.z].map(|c| c.to_bits() >> (16 - CORNER))
     }
 
-    /// The exact corner for a value that is at most [`DOUBT`] off.
+    /// The exact corner for a value that is at most `margin` off.
     #[inline(always)]
     fn exact(&self, axis: usize, at: [u32; 2], value: i32) -> i32 {
         let value = value.wrapping_add(self.fraction[axis]);
-        let near = (value >> self.shift).wrapping_add(self.base[axis]);
-        let rest = (value.wrapping_add(DOUBT) as u32) << (32 - self.shift);
+        let near = (value << self.doublings >> self.shift).wrapping_add(self.base[axis]);
+        let rest = (value.wrapping_add(self.margin) as u32) << (32 - self.shift);
         if rest < self.doubt { self.settle(axis, at, near) } else { near }
     }
 
@@ -153,9 +178,13 @@ impl<'n> Corners<'n> {
     #[cold]
     #[inline(never)]
     fn settle(&self, axis: usize, at: [u32; 2], near: i32) -> i32 {
-        let Piece { points, degrees, strides, along, across, .. } = &self.piece;
+        let Piece { points, degrees, strides, along, across, bits, .. } = &self.piece;
         let steps = [along.steps, across.steps];
         let is_column = at[1] != 0 && at[1] != steps[1];
+        if *bits < LEAST_BITS || (is_column && at[0] != 0 && at[0] != steps[0]) {
+            let unit = 16 - CORNER;
+            return self.piece.exact_floor(axis, at, false, (near, i64::from(near) << unit, unit));
+        }
         let (way, other) = if is_column { (1, 0) } else { (0, 1) };
         let start = if at[other] == 0 { 0 } else { degrees[other] * strides[other] };
         let (i, rest, degree) = (at[way], steps[way].wrapping_sub(at[way]), degrees[way] & 3);
@@ -175,7 +204,6 @@ impl<'n> Corners<'n> {
         }
         let interval = i64::from(whole) << (16 - CORNER);
         let mut settled = near;
-        // More than a unit off where F is small.
         for _ in 0..4 {
             if residual < 0 {
                 (settled, residual) = (settled - 1, residual.wrapping_add(interval));

@@ -4,29 +4,36 @@
 //! row by row, and where they are seen their normals.
 //!
 //! # How
-//! All values are taken from the first control point on, in 2^-F pixel. Along each column of the net S is a cubic in s:
-//! its coefficients are found once. A row is a cubic in r through what the columns are at s; it is walked by differences
-//! with 4 bits more, an axis at a time, so that the state of one cubic stays in registers: three additions and a shift a
-//! point. Where the fraction of x or y is too close to a pixel's border, [`exact`] decides.
+//! All values are taken from the first control point on, in 2^-F pixel. A row is b0 + b1·t + b2·t² + b3·t³ along each axis;
+//! its coefficients are cubics in s, whose own coefficients are found once. A row is walked by differences with 4 bits
+//! more, an axis at a time, so that the state of one cubic stays in registers: three additions and a shift a point. Where
+//! the fraction of x or y is too close to a pixel's border, [`exact`] decides.
 //!
 //! # Why it is right
-//! Let E be the largest difference of neighbours in the net, m ≥ 3E the largest bound on a derivative along any axis. F is
-//! taken such that 48·E < 2^31: every coefficient below, times the power of two that [`at`] wants, fits. Each [`high`]
-//! rounds down by less than one unit, so a value by `at` is within 3 units, and a parameter in 2^-31, within two of them,
-//! adds less than one. Control values of a row are within 5 units (one of them where F < 16 drops bits of the net), and so
-//! is every point of the cubic through them.
+//! Rows are kept as b0, 4·b1, 2·b2 and 2·b3: what their differences are sums of, in products of 32 bits. F is taken such that
+//! the cubics in s, times the powers of two that [`at`] wants, are below 2^29, that of the last one below 2^27. Then all sums
+//! fit. With E the largest difference of neighbours in the net, none is above 768·E: nets of which that does not fit to begin
+//! with drop low bits. Most have a tenth of it or less.
 //!
-//! A run of at most [`RUN`] points starts at such a value. Differences, in 2^-(F+4), are rounded by at most 3, 2.2 and 1.2
-//! units, their factors 1/n² and 1/n³ by less than 2^-27 and 2^-25 of themselves: after k ≤ 31 steps the sum is off by at
-//! most 3k + 2.2·k(k−1)/2 + 1.2·k(k−1)(k−2)/6 of those units, and 11 units of 2^-F for the factors; dropping 4 bits at each
-//! step costs up to 31 more. In all that is below 500; [`DOUBT`] is twice as much.
+//! Each [`high`] rounds down by less than one unit, so a value by `at` is within 3 units, and a parameter in 2^-31, within
+//! two of them, adds less than one. At the start of a run a value is within 14 units, and so it would be along the exact
+//! cubic from there: 7 for b0 to b3, or 32 where the run does not start at t = 0; 3 more where bits of the net were
+//! dropped.
 //!
-//! Depths are those of the fixed-point z: within one unit of the exact ones.
+//! A run has at most [`RUN`] points. Its differences, in 2^-(F+4), are off by 3.75·2^e, 2.5·2^e' and 1.25·2^e' of those
+//! units, with the shifts of [`Differences`]: after k ≤ min(n, 31) steps, for which e and e' are made, the sum is off by at
+//! most 3.75·2^e·k + 2.5·2^e'·k(k−1)/2 + 1.25·2^e'·k(k−1)(k−2)/6 of those units, which is 453 of 2^-F. The factors 1/n, 1/n²
+//! and 1/n³, within 2^-29, 2^-27 and 2^-25 of themselves, add 9 units, dropping 4 bits at each step up to 31. In all that
+//! is below 600; [`DOUBT`] is more.
+//!
+//! Depths are those of the fixed-point z: within one unit of the exact ones where F is 16 or more.
 
 mod corners;
 mod exact;
+mod row;
 mod run;
 mod slopes;
+mod steps;
 mod tangents;
 
 #[cfg(all(test, feature = "std"))]
@@ -35,24 +42,25 @@ mod tests;
 use super::brush::Shading;
 use super::light::Side;
 use super::pen::{Ink, Stain};
-use super::style::Style;
 use super::tile::Area;
 use crate::geometry::Point3;
-use crate::num::{cubic_at, high};
+use crate::num::{cubic_at, high, leading_zeros};
 use crate::patch::{Surface, SurfaceNet};
 pub(super) use corners::Corners;
-use run::{DOUBT, Depths, Line, Pixels, Points, RUN, indexed, short};
+use row::{Row, Units};
+use run::{DOUBT, Depths, Line, Pixels, Points, RUN, Raster};
 pub(super) use slopes::RowSlopes;
+use steps::{Differences, Parameters};
 use tangents::RowTangents;
 
-/// The most fraction bits of values.
-const MOST_BITS: u32 = 28;
-
-/// Bits that differences have more than values.
-const MORE: u32 = 4;
+/// The most bits that values have more than the net.
+const MOST_MORE: i32 = 12;
 
 /// A cubic c0 + c1·t + c2·t² + c3·t³ as c0, 2·c1, 4·c2, 8·c3.
 type Cubic = [i32; 4];
+
+/// A row b0 + b1·t + b2·t² + b3·t³ as b0, 4·b1, 2·b2, 2·b3.
+type RowCubic = [i32; 4];
 
 /// A cubic at a parameter in 2^-31, rounded down by less than 3.
 #[inline(always)]
@@ -60,66 +68,15 @@ fn at(c: &Cubic, t: i32) -> i32 {
     cubic_at(c, t)
 }
 
-/// Parameters i/n or (i + 1/2)/n in 2^-31.
-#[derive(Clone, Copy, Debug)]
-struct Parameters {
-    steps: u32,
-    /// ⌊(2^31 − 1)·2^shift/2n⌋.
-    factor: u32,
-    shift: u32,
+/// The leading zeros of magnitudes.
+fn zeros(all: i32) -> i32 {
+    leading_zeros(all as u32 | 1) as i32
 }
 
-impl Parameters {
-    fn new(steps: u32) -> Self {
-        let doubled = 2 * steps;
-        let shift = doubled.checked_ilog2().unwrap_or(0).min(15);
-        const ONE: u32 = i32::MAX.unsigned_abs();
-        let whole = ONE.checked_div(doubled).unwrap_or(0);
-        let rest = ONE.wrapping_sub(whole.wrapping_mul(doubled));
-        let factor = (whole << shift).wrapping_add((rest << shift).checked_div(doubled).unwrap_or(0));
-        Self { steps, factor, shift }
-    }
-
-    /// The parameter of half step `i` in one product: within 2·i of those units.
-    #[inline(always)]
-    fn near(&self, i: u32) -> i32 {
-        i.wrapping_mul(self.factor >> (self.shift & 15)) as i32
-    }
-
-    /// The parameter of half step `i`, within two units.
-    #[inline(always)]
-    fn half(&self, i: u32) -> i32 {
-        ((u64::from(i) * u64::from(self.factor)) >> (self.shift & 15)) as i32
-    }
-}
-
-/// 1/n, 1/n² and 1/n³ in 2^-31, shifted left by `shift`, 2·`shift` and 3·`shift`: at least 1/2, 1/4 and 1/8.
-#[derive(Clone, Copy, Debug)]
-struct Powers {
-    powers: [i32; 3],
-    /// What products with them are multiplied by, then how far they are shifted right, to be differences.
-    left: [i32; 3],
-    right: [u32; 3],
-}
-
-impl Powers {
-    fn new(along: &Parameters) -> Self {
-        let shift = along.steps.checked_ilog2().unwrap_or(0);
-        let first = (along.factor << (shift + 1 - along.shift.min(shift + 1))) as i32;
-        let second = high(first, first) << 1;
-        let third = high(second, first) << 1;
-        let by = [1, 2, 3].map(|k| (k * shift) as i32 - if k == 1 { 1 } else { 5 });
-        Self {
-            powers: [first, second, third],
-            left: by.map(|by| 1 << by.min(0).unsigned_abs()),
-            right: by.map(|by| by.clamp(0, 31).unsigned_abs()),
-        }
-    }
-
-    #[inline(always)]
-    fn times(&self, k: usize, value: i32) -> i32 {
-        high(value, self.powers[k]).wrapping_mul(self.left[k]) >> self.right[k]
-    }
+/// The magnitude of a number, or one less.
+#[inline(always)]
+const fn magnitude(c: i32) -> i32 {
+    c ^ (c >> 31)
 }
 
 /// The factors of first, second and third differences: n, n(n−1)/2, 1 for n = 3.
@@ -160,16 +117,20 @@ pub(super) struct Piece<'n> {
     strides: [usize; 2],
     along: Parameters,
     across: Parameters,
-    powers: Powers,
+    differences: Differences,
     /// F.
     bits: u32,
+    /// Whether values are of a net with fewer bits.
+    is_cut: bool,
     /// What values are taken from, plus 1/2, in 2^-16; and the fraction of it in 2^-F.
     origin: [i32; 3],
     fraction: [i32; 3],
-    /// The columns of the net as cubics in s, by axis.
-    columns: [[Cubic; 4]; 3],
+    /// The coefficients of rows as cubics in s, by axis.
+    rows: [[Cubic; 4]; 3],
     /// The least and the greatest value of z in the net, plus the fraction of the origin.
     depths: [i32; 2],
+    /// How often tangents along a row, and across, can be doubled.
+    doublings: [u32; 2],
 }
 
 /// Whether a net of type `S` is walked here: a polynomial, tensor-product one of degree 3 or less.
@@ -180,112 +141,149 @@ pub(super) fn suits<S: Surface>(net: &SurfaceNet<'_>) -> bool {
 }
 
 impl<'n> Piece<'n> {
-    /// A piece that [`suits`]; `steepest` is the largest bound on a derivative, in 2^-9.
-    #[inline(never)]
-    pub(super) fn new(net: SurfaceNet<'n>, steps: (u32, u32), turn: u8, steepest: u32) -> Self {
+    /// A piece that [`suits`], to be [set up](Self::set_up) where it stays.
+    #[inline(always)]
+    pub(super) fn blank(net: SurfaceNet<'n>, steps: (u32, u32), turn: u8) -> Self {
         let (m, h) = net.degrees();
-        let (r, s) = (Parameters::new(steps.0), Parameters::new(steps.1));
         let is_turned = turn == 1;
         let (degrees, strides) = if is_turned { ([h, m], [1, h + 1]) } else { ([m, h], [h + 1, 1]) };
-        let (along, across) = if is_turned { (s, r) } else { (r, s) };
-        // 16·m·2^(F−9) is 48·E or more, and below 2^31.
-        let bits = (4 + steepest.leading_zeros()).min(MOST_BITS);
-        let points = net.points();
-        let mut piece = Self {
-            points,
+        let (along, across) = if is_turned { (steps.1, steps.0) } else { steps };
+        let along = Parameters::new(along);
+        Self {
+            points: net.points(),
             degrees,
             strides,
             along,
-            across,
-            powers: Powers::new(&along),
-            bits,
+            across: Parameters::new(across),
+            differences: Differences::new(&along),
+            bits: 0,
+            is_cut: false,
             origin: [0; 3],
             fraction: [0; 3],
-            columns: [[[0; 4]; 4]; 3],
+            rows: [[[0; 4]; 4]; 3],
             depths: [0; 2],
-        };
-        match points.first_chunk::<16>() {
-            Some(points) => piece.set_up(points),
-            None => {
-                let mut room = [Point3::ORIGIN; 16];
-                room.iter_mut().zip(points).for_each(|(to, from)| *to = *from);
-                piece.set_up(&room);
-                // Columns that there are not: where the last one is, so that a row's control values bound it.
-                for columns in &mut piece.columns {
-                    let last = columns[degrees[0] & 3];
-                    columns.iter_mut().skip(degrees[0] + 1).for_each(|column| *column = last);
-                }
-            }
+            doublings: [0; 2],
         }
-        piece
     }
 
+    /// Finds the coefficients; `steepest` is the largest bound on a derivative, in 2^-9. `WALKED`: lines along rows are
+    /// wanted.
+    #[inline(never)]
+    pub(super) fn set_up<const WALKED: bool>(&mut self, steepest: u32) {
+        // 768·E·2^(16 − down) is below 2^31. Mostly there is much more room: then no bit is dropped after all.
+        let mut down = 16_u32.saturating_sub(steepest.leading_zeros());
+        // What is left for sums; differences of long steps are larger than values.
+        let less = if !WALKED { 2 } else { 3 + if self.along.steps < 4 { 3 } else { 0 } };
+        let (mut sizes, mut spare) = self.find(down, less);
+        if down > 0 && spare > 0 {
+            down = down.saturating_sub(spare as u32);
+            (sizes, spare) = self.find(down, less);
+        }
+        if let Some(p) = self.points.first() {
+            self.origin = p.to_array().map(|c| c.to_bits() + (1 << 15));
+        }
+        let more = spare.min(if down > 0 { 0 } else { MOST_MORE });
+        self.is_cut = down > 0 || more < 0;
+        self.bits = (16 - down as i32 + more).max(0) as u32;
+        let [b0, b1, b2, b3] = sizes;
+        // Values of coefficients are less than twice as large, those of derivatives less than three times.
+        let doublings = |all: i32| (zeros(all) - more - 4).clamp(0, 31) as u32;
+        self.doublings = [doublings(b1 >> 4 | b2 >> 1 | b3 << 1), doublings(b0 >> 2 | b1 >> 3 | b2 >> 1 | b3)];
+        self.take(down, more);
+    }
+
+    /// One coordinate of the net, from that of its first point on: four values along a row after the other.
     #[inline(always)]
-    fn set_up(&mut self, points: &[Point3; 16]) {
-        let (up, down) = (self.bits.saturating_sub(16), 16_u32.saturating_sub(self.bits));
-        let factors = &FACTORS[self.degrees[1] & 3];
-        for axis in 0..3 {
-            let bits = |k: usize| {
-                let p = &points[k & 15];
-                match axis {
-                    0 => p.x.to_bits(),
-                    1 => p.y.to_bits(),
-                    _ => p.z.to_bits(),
+    fn gather(&self, coordinate: impl Fn(&Point3) -> i32, out: &mut [i32; 16]) {
+        let start = self.points.first().map_or(0, &coordinate);
+        let value = |p: &Point3| coordinate(p).wrapping_sub(start);
+        match self.points.first_chunk::<16>() {
+            Some(points) if self.strides[0] == 1 => {
+                out.iter_mut().zip(points).for_each(|(out, p)| *out = value(p));
+            }
+            Some(points) => {
+                for (k, p) in points.iter().enumerate() {
+                    out[(k >> 2 | k << 2) & 15] = value(p);
                 }
-            };
-            let start = bits(0) >> down;
-            self.origin[axis] = bits(0) + (1 << 15);
-            self.fraction[axis] = (self.origin[axis] & 0xffff) >> down << up;
-            for (a, column) in self.columns[axis].iter_mut().enumerate().take(self.degrees[0] + 1) {
-                let value = |b: usize| {
-                    let bits = bits(a * self.strides[0] + b * self.strides[1]) >> down;
-                    bits.wrapping_sub(start) << up
-                };
-                let values = [value(0), value(1), value(2), value(3)];
-                *column = scaled(power(values, factors));
-                if axis == 2 {
-                    let [least, most] = &mut self.depths;
-                    for value in values.iter().take(self.degrees[1] + 1) {
-                        (*least, *most) = ((*least).min(*value), (*most).max(*value));
+            }
+            None => {
+                for (b, row) in out.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+                    for (a, out) in row.iter_mut().enumerate() {
+                        // What there is not has no weight.
+                        *out = self.points.get(a * self.strides[0] + b * self.strides[1]).map_or(0, value);
                     }
                 }
             }
         }
-        self.depths = self.depths.map(|depth| depth + self.fraction[2]);
     }
 
-    /// The control values of a row.
-    #[inline(always)]
-    fn control(&self, axis: usize, s: i32) -> [i32; 4] {
-        let [a, b, c, d] = &self.columns[axis];
-        [at(a, s), at(b, s), at(c, s), at(d, s)]
+    /// Finds the coefficients of rows along an axis, and what bits they have.
+    #[inline(never)]
+    fn set_axis(&mut self, values: &[i32; 16], axis: usize, sizes: &mut [i32; 4]) {
+        let (by_row, by_column) = (&FACTORS[self.degrees[0] & 3], &FACTORS[self.degrees[1] & 3]);
+        let mut columns = [[0; 4]; 4];
+        for (b, values) in values.as_chunks::<4>().0.iter().enumerate() {
+            let [b0, b1, b2, b3] = power(*values, by_row);
+            let by = [b0, b1.wrapping_shl(2), b2.wrapping_shl(1), b3.wrapping_shl(1)];
+            columns.iter_mut().zip(by).for_each(|(column, value)| column[b & 3] = value);
+        }
+        // Not by an index: out of line it would be checked.
+        let rows = self.rows.get_mut(axis).into_iter().flatten();
+        for ((row, column), size) in rows.zip(&columns).zip(sizes) {
+            *row = scaled(power(*column, by_column));
+            *size |= row.iter().fold(0, |all, c| all | magnitude(*c));
+        }
     }
 
-    /// The cubic of a row, its coefficients as they are.
-    #[inline(always)]
-    fn row(&self, control: [i32; 4]) -> [i32; 4] {
-        power(control, &FACTORS[self.degrees[0] & 3])
+    /// The least and the greatest of the values that there are.
+    fn range(&self, values: &[i32; 16]) -> [i32; 2] {
+        let rows = values.as_chunks::<4>().0.iter().take(self.degrees[1] + 1);
+        rows.flat_map(|row| row.iter().take(self.degrees[0] + 1))
+            .fold([0; 2], |[least, most], value| [least.min(*value), most.max(*value)])
     }
 
-    /// The walk along a row from parameter `t` on.
+    /// Finds the coefficients from `down` bits less than the net has; what bits they have, and how often they can be doubled so
+    /// that `less` bits are left, and two more of the last one.
+    #[inline(never)]
+    fn find(&mut self, down: u32, less: i32) -> ([i32; 4], i32) {
+        let (mut sizes, mut values) = ([0; 4], [0; 16]);
+        self.gather(|p| p.x.to_bits() >> down, &mut values);
+        self.set_axis(&values, 0, &mut sizes);
+        self.gather(|p| p.y.to_bits() >> down, &mut values);
+        self.set_axis(&values, 1, &mut sizes);
+        self.gather(|p| p.z.to_bits() >> down, &mut values);
+        self.set_axis(&values, 2, &mut sizes);
+        self.depths = self.range(&values);
+        let [b0, b1, b2, b3] = sizes;
+        (sizes, zeros(b0 | b1 | b2).min(zeros(b3) - 2) - less)
+    }
+
+    /// Brings values to their fraction bits: `more` than they have.
     #[inline(always)]
-    fn line(&self, b: &[i32; 4], t: i32, fraction: i32) -> Line {
-        let [b0, b1, b2, b3] = *b;
-        let (value, slope, bend) = if t == 0 {
-            (b0, b1, b2)
-        } else {
-            let slope = at(&[b1, b2.wrapping_shl(2), b3.wrapping_mul(12), 0], t);
-            (at(&scaled(*b), t), slope, b2.wrapping_add(high(b3.wrapping_mul(6), t)))
-        };
-        let third = self.powers.times(2, b3.wrapping_mul(6));
-        let second = self.powers.times(1, bend.wrapping_shl(1));
-        let first = self.powers.times(0, slope.wrapping_shl(MORE));
-        Line {
-            value: value.wrapping_add(fraction),
-            // Modulo 2^32, where the sum fits though its parts may not.
-            first: first.wrapping_add(self.powers.times(1, bend)).wrapping_add(self.powers.times(2, b3)),
-            second: second.wrapping_add(third),
-            third,
+    fn take(&mut self, down: u32, more: i32) {
+        let (up, less) = (more.max(0) as u32 & 31, more.min(0).unsigned_abs() & 31);
+        for c in self.rows.as_flattened_mut().as_flattened_mut() {
+            *c = *c << up >> less;
+        }
+        for (fraction, origin) in self.fraction.iter_mut().zip(&self.origin) {
+            *fraction = (*origin & 0xffff) >> down << up >> less;
+        }
+        self.depths = self.depths.map(|depth| (depth << up >> less) + self.fraction[2]);
+    }
+
+    /// A coordinate along the row at `s`. Out of line: coefficients are not copied to the stack.
+    #[inline(never)]
+    fn row(&self, axis: usize, s: i32) -> RowCubic {
+        // Not by an index: out of line it would be checked.
+        self.rows.get(axis).map_or([0; 4], |[a, b, c, d]| [at(a, s), at(b, s), at(c, s), at(d, s)])
+    }
+
+    /// The walks along a row from parameter `t` on, of what pixels are made from: x and y plus [`DOUBT`], and z.
+    #[inline(never)]
+    fn lines(&self, row: &[RowCubic; 3], t: i32, out: &mut [Line; 3]) {
+        let more = [DOUBT, DOUBT, 0];
+        for (((out, row), fraction), more) in out.iter_mut().zip(row).zip(&self.fraction).zip(more) {
+            *out = self.differences.line(row, t, fraction.wrapping_add_unsigned(more));
         }
     }
 
@@ -293,12 +291,16 @@ impl<'n> Piece<'n> {
     pub(super) fn draw(&self, centred: bool, target: &mut Target<'_>) {
         let half = u32::from(centred);
         let last = self.along.steps - half;
-        let (pixels, window) = (Pixels::new(self.bits), target.shading.window);
-        let depths = Depths::new(window, self.bits, self.base(2), self.depths);
-        let columns = [self.base(0).wrapping_sub(target.area.x), target.area.width as i32];
-        let rows = [self.base(1).wrapping_sub(target.area.y), target.area.height as i32];
-        let sides = [Range::of(columns, self, 0), Range::of(rows, self, 1)];
-        let mut points = Points::new();
+        let area = target.area;
+        let starts = [self.base(0).wrapping_sub(area.x), self.base(1).wrapping_sub(area.y)];
+        let units = Units {
+            pixels: Pixels::new(self.bits),
+            depths: Depths::new(target.shading.window, self.bits, self.base(2), self.depths),
+            raster: Raster { starts, width: area.width, height: area.height },
+        };
+        let sides = [Range::of(starts[0], area.width, self, 0), Range::of(starts[1], area.height, self, 1)];
+        let start = self.along.half(half);
+        let (mut points, mut rows) = (Points::new(), 0_u32);
         let mut row = Row {
             piece: self,
             cubics: [[0; 4]; 3],
@@ -311,27 +313,35 @@ impl<'n> Piece<'n> {
         };
         for j in 0..=self.across.steps - half {
             let s = self.across.half(2 * j + half);
-            let y = self.control(1, s);
-            let by_row = sides[1].place(&y);
-            if by_row == Place::Outside {
+            let y = self.row(1, s);
+            let bounds = bounds(&y);
+            if sides[1].is_beside(bounds) {
                 continue;
             }
-            *target.points += u64::from(last) + 1;
-            let x = self.control(0, s);
-            let by_column = if target.is_wide { sides[0].place(&x) } else { Place::Inside };
-            if by_column == Place::Outside {
-                continue;
+            row.clip[1] = !sides[1].holds(bounds);
+            rows += 1;
+            let x = self.row(0, s);
+            if target.is_wide {
+                let bounds = self::bounds(&x);
+                if sides[0].is_beside(bounds) {
+                    continue;
+                }
+                row.clip[0] = !sides[0].holds(bounds);
             }
-            row.cubics = [self.row(x), self.row(y), self.row(self.control(2, s))];
+            row.cubics = [x, y, self.row(2, s)];
             (row.j, row.s, row.is_known) = (j, s, false);
-            row.clip = [by_column == Place::Across, by_row == Place::Across];
-            let mut first = 0;
-            while first <= last {
+            let (mut first, mut t) = (0, start);
+            loop {
                 let count = (last + 1 - first).min(RUN as u32);
-                row.run(first, count as usize, (&pixels, &depths), [columns[0], rows[0]], &mut points, target);
+                row.run((first, t), count as usize, &units, &mut points, target);
                 first += count;
+                if first > last {
+                    break;
+                }
+                t = self.along.half(2 * first + half);
             }
         }
+        *target.points += u64::from(rows) * (u64::from(last) + 1);
     }
 
     /// The whole pixels of the origin.
@@ -340,26 +350,18 @@ impl<'n> Piece<'n> {
     }
 }
 
-/// Where the values of a row are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Place {
-    Inside,
-    Outside,
-    Across,
-}
-
 /// The columns or the rows of a tile, in the unit of a piece.
 struct Range {
     low: i32,
     high: i32,
 }
 
-/// What control values and points may be off.
+/// What values and points may be off.
 const MARGIN: i32 = DOUBT as i32;
 
 impl Range {
     /// From `-start` pixels after the origin, `length` pixels.
-    fn of([start, length]: [i32; 2], piece: &Piece<'_>, axis: usize) -> Self {
+    fn of(start: i32, length: u32, piece: &Piece<'_>, axis: usize) -> Self {
         let from = |pixel: i64| {
             let units = (pixel << piece.bits) - i64::from(piece.fraction[axis]);
             units.clamp(i32::MIN.into(), i32::MAX.into()) as i32
@@ -368,132 +370,24 @@ impl Range {
         Self { low: from(start), high: from(start + i64::from(length)) }
     }
 
+    /// Whether all between two values are outside.
     #[inline(always)]
-    fn place(&self, [a, b, c, d]: &[i32; 4]) -> Place {
-        let (least, most) = (*a.min(b).min(c).min(d), *a.max(b).max(c).max(d));
-        if least >= self.low.saturating_add(MARGIN) && most < self.high.saturating_sub(MARGIN) {
-            Place::Inside
-        } else if most < self.low.saturating_sub(MARGIN) || least >= self.high.saturating_add(MARGIN) {
-            Place::Outside
-        } else {
-            Place::Across
-        }
+    fn is_beside(&self, [least, most]: [i32; 2]) -> bool {
+        most < self.low || least >= self.high
+    }
+
+    /// Whether all between two values are inside.
+    #[inline(always)]
+    fn holds(&self, [least, most]: [i32; 2]) -> bool {
+        least >= self.low && most < self.high
     }
 }
 
-/// A row on its way to the pixels.
-struct Row<'p, 'n> {
-    piece: &'p Piece<'n>,
-    cubics: [[i32; 4]; 3],
-    j: u32,
-    /// 1 for the lattice of centres.
-    half: u32,
-    s: i32,
-    /// Whether some points may be in columns, and in rows, outside the tile.
-    clip: [bool; 2],
-    tangents: RowTangents,
-    /// Whether the tangents were found.
-    is_known: bool,
-}
-
-impl Row<'_, '_> {
-    /// Draws `count` points from number `first` on.
-    #[inline(never)]
-    fn run(
-        &mut self,
-        first: u32,
-        count: usize,
-        (pixels, depths): (&Pixels, &Depths),
-        starts: [i32; 2],
-        points: &mut Points,
-        target: &mut Target<'_>,
-    ) {
-        let (piece, area) = (self.piece, target.area);
-        let t = piece.along.half(2 * first + self.half);
-        let line = |axis: usize, more: u32| {
-            piece.line(&self.cubics[axis], t, piece.fraction[axis].wrapping_add_unsigned(more))
-        };
-        let x = line(0, DOUBT);
-        let columns = points.columns.get_mut(..count).unwrap_or_default();
-        let is_sure = if self.clip[0] {
-            pixels.columns::<true>(x, columns, starts[0])
-        } else {
-            pixels.columns::<false>(x, columns, starts[0])
-        };
-        if !is_sure {
-            pixels.each_doubtful(x, count, &mut |k, near| {
-                points.columns[k & (RUN - 1)] = short::<true>(self.settle(0, first + k as u32, near, starts[0]));
-            });
-        }
-        let y = line(1, DOUBT);
-        let sides = [area.width, area.height];
-        let is_sure = if self.clip[1] {
-            pixels.rows::<true>(y, points, count, starts[1], sides)
-        } else {
-            pixels.rows::<false>(y, points, count, starts[1], sides)
-        };
-        if !is_sure {
-            pixels.each_doubtful(y, count, &mut |k, near| {
-                let k = k & (RUN - 1);
-                let row = self.settle(1, first + k as u32, near, starts[1]);
-                points.rows[k] = row as u16;
-                points.index[k] = indexed::<true>(row, points.columns[k], sides);
-            });
-        }
-        if self.clip[0] {
-            points.clip(count, area.width);
-        }
-        let z = line(2, 0);
-        let Points { index, seen, .. } = &mut *points;
-        let index = index.get(..count).unwrap_or_default();
-        if target.ink != Ink::Fill {
-            return depths.hide(z, index, target.depth);
-        }
-        let count = depths.test(z, index, target.depth, seen);
-        let points = &*points;
-        let seen = points.seen.get(..count).unwrap_or_default();
-        if count > 0 && target.shading.style.needs_normals() && !self.is_known {
-            piece.tangents(&self.cubics, self.s, &mut self.tangents);
-            self.is_known = true;
-        }
-        if target.shading.style == Style::Shaded {
-            // Most scenes: without asking for the style at each point.
-            self.colour(seen, first, points, target, |row, i, target, _| {
-                target.shading.light.level(row.normal(i, target.side))
-            });
-        } else {
-            self.colour(seen, first, points, target, |row, i, target, index| {
-                let depth = target.depth.get(index).map_or(0, |stored| stored >> 1);
-                target.shading.level(depth, || row.normal(i, target.side))
-            });
-        }
-    }
-
-    /// Gives the points that were seen their colours.
-    #[inline(always)]
-    fn colour(
-        &self,
-        seen: &[u8],
-        first: u32,
-        points: &Points,
-        target: &mut Target<'_>,
-        level: impl Fn(&Self, u32, &Target<'_>, usize) -> u8,
-    ) {
-        for k in seen {
-            let (i, k) = (first + u32::from(*k), usize::from(*k) & (RUN - 1));
-            let index = points.index[k] as usize;
-            let at = [target.area.x + i32::from(points.columns[k]), target.area.y + i32::from(points.rows[k])];
-            let level = level(self, i, target, index);
-            target.stain.stain(index, at, level);
-        }
-    }
-
-    /// The exact pixel of a point in doubt, from the tile's first one.
-    #[cold]
-    #[inline(never)]
-    fn settle(&self, axis: usize, i: u32, near: i32, start: i32) -> i32 {
-        let base = self.piece.base(axis);
-        let pixel = self.piece.exact_pixel(axis, [i, self.j], self.half == 1, near.wrapping_add(base));
-        pixel.wrapping_sub(base).wrapping_add(start)
-    }
+/// What the points of a row are between: its control values b0, b0 + b1/3, b0 + (2·b1 + b2)/3 and b0 + b1 + b2 + b3.
+#[inline(always)]
+fn bounds([start, slope, bend, last]: &RowCubic) -> [i32; 2] {
+    const TWELFTH: i32 = (1 << 30) / 3;
+    let (a, d) = (*start, start.wrapping_add(slope >> 2).wrapping_add(bend >> 1).wrapping_add(last >> 1));
+    let (b, c) = (a + high(*slope, TWELFTH), a + high(slope.wrapping_add(*bend), 2 * TWELFTH));
+    [a.min(b).min(c.min(d)).saturating_sub(MARGIN), a.max(b).max(c.max(d)).saturating_add(MARGIN)]
 }

@@ -6,8 +6,9 @@
 //! less than one, so tangents are within 3 units, and a component of the normal within 2^18.
 
 use super::super::light::Side;
+use super::steps::Parameters;
 use super::tangents::{RowTangents, normal_of};
-use super::{Parameters, Piece};
+use super::{FACTORS, Piece, RowCubic, power};
 use crate::num::leading_zeros;
 
 /// Fraction bits of parameters.
@@ -69,18 +70,30 @@ fn step(c: i32, higher: i32, t: i32) -> i32 {
 /// Step `i` in 2^-13.
 #[inline(always)]
 fn parameter(parameters: &Parameters, i: u32) -> i32 {
-    ((parameters.near(2 * i) as u32 + (1 << 17)) >> 18) as i32
+    ((parameters.near().wrapping_mul(2 * i) + (1 << 17)) >> 18) as i32
 }
 
 impl Slopes {
     pub(super) fn of(piece: &Piece<'_>) -> Self {
-        // From c0, 2·c1, 4·c2, 8·c3 to the control values of the derivative.
-        let mut slopes = piece.columns.each_ref().map(|columns| {
-            columns.each_ref().map(|[_, c1, c2, c3]| {
-                let (first, second, third) = (c1 >> 1, c2 >> 2, c3 >> 3);
-                [first, first + second, first + 2 * second + 3 * third]
-            })
-        });
+        let Piece { points, degrees: [m, h], strides, .. } = piece;
+        let mut slopes = [[[0; 3]; 4]; 3];
+        for a in 0..=m & 3 {
+            // The control values of the derivative, up to its degree, and raised to degree 2 up to a factor.
+            let mut sides = [[0; 3]; 3];
+            let at = |b: usize| points.get(a * strides[0] + b * strides[1]).copied().unwrap_or_default();
+            for (b, side) in sides.iter_mut().enumerate().take(*h) {
+                let [from, to] = [at(b), at(b + 1)].map(|p| p.to_array().map(|c| c.to_bits() >> 2));
+                *side = [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
+            }
+            for (axis, slopes) in slopes.iter_mut().enumerate() {
+                let [p, q, r] = sides.map(|side| side[axis]);
+                slopes[a & 3] = match h {
+                    1 => [p; 3],
+                    2 => [p, (p >> 1) + (q >> 1), q],
+                    _ => [p, q, r],
+                };
+            }
+        }
         let bits = bits(slopes.as_flattened().as_flattened());
         for slope in slopes.as_flattened_mut() {
             *slope = quadratic(slope.map(|c| fit(c, bits)));
@@ -92,8 +105,12 @@ impl Slopes {
 impl Piece<'_> {
     /// Finds the tangents of row `j`, whose coefficients are `cubics`.
     #[inline(never)]
-    pub(super) fn row_slopes(&self, slopes: &Slopes, cubics: &[[i32; 4]; 3], j: u32, out: &mut RowSlopes) {
-        let along = cubics.map(|[_, b1, b2, b3]| [b1, b1 + b2, b1 + 2 * b2 + 3 * b3]);
+    pub(super) fn row_slopes(&self, slopes: &Slopes, cubics: &[RowCubic; 3], j: u32, out: &mut RowSlopes) {
+        // From 4·b1, 2·b2 and 2·b3 to control values of the derivative.
+        let along = cubics.map(|[_, b1, b2, b3]| {
+            let (first, second, third) = (b1 >> 2, b2 >> 1, b3 >> 1);
+            [first, first + second, first + 2 * second + 3 * third]
+        });
         let used = bits(along.as_flattened());
         let is_point = used <= NOISE.ilog2();
         for (out, along) in out.along.iter_mut().zip(along) {
@@ -101,7 +118,7 @@ impl Piece<'_> {
         }
         let s = parameter(&self.across, j);
         for (out, columns) in out.across.iter_mut().zip(&slopes.0) {
-            *out = self.row(columns.map(|[a, b, c]| step(a, step(b, c, s), s)));
+            *out = power(columns.map(|[a, b, c]| step(a, step(b, c, s), s)), &FACTORS[self.degrees[0] & 3]);
         }
     }
 
@@ -131,9 +148,9 @@ impl Piece<'_> {
         if is_point {
             return self.inside(s, t, Side::Along);
         }
-        let cubics = [self.row(self.control(0, s)), self.row(self.control(1, s)), self.row(self.control(2, s))];
         let mut row = RowTangents::default();
-        self.tangents(&cubics, s, &mut row);
+        self.tangents(&[self.row(0, s), self.row(1, s), self.row(2, s)], s, &mut row);
+        row.double();
         let tangents = row.at(t);
         let is_clear = tangents.iter().all(|tangent| bits(tangent) > NOISE.ilog2());
         let normal = if is_clear { normal_of(Side::Along, tangents) } else { None };

@@ -4,7 +4,7 @@
 use super::super::brush::Shading;
 use super::super::depth::DepthWindow;
 use super::super::light::{Light, Side};
-use super::super::pen::{Ink, Stain};
+use super::super::pen::{Ink, Seen, Stain};
 use super::super::style::Style;
 use super::super::tile::Area;
 use super::{Piece, Target};
@@ -24,6 +24,10 @@ impl Stain for Record {
     fn stain(&mut self, _: usize, [x, y]: [i32; 2], _: u8) {
         self.0.insert((x, y));
     }
+
+    fn stain_all(&mut self, area: &Area, points: &Seen<'_>) {
+        points.each(area, |index, at, shade| self.stain(index, at, shade));
+    }
 }
 
 /// The pixels of a net whose z is 0, in an area.
@@ -31,7 +35,8 @@ fn drawn(net: SurfaceNet<'_>, steps: (u32, u32), turn: u8, centred: bool, area: 
     let (mut record, mut points) = (Record(Pixels::new()), 0);
     let mut depth = vec![u16::MAX; area.pixels()];
     let shading = Shading { light: &Light::default(), style: Style::Flat, window: DepthWindow::of(0, 0) };
-    let piece = Piece::new(net, steps, turn, PieceSlopes::of(net).steepest(net));
+    let mut piece = Piece::blank(net, steps, turn);
+    piece.set_up::<true>(PieceSlopes::of(net).steepest(net));
     piece.draw(
         centred,
         &mut Target {

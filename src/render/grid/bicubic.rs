@@ -90,8 +90,8 @@ impl<'a> Bicubic<'a> {
         for j in 0..=self.counts.1 {
             let Some(out) = rows.0[(j & 1) as usize].get_mut(..count.min(SEGMENTS + 1)) else { return };
             let row = self.corners.row(j);
-            if self.corners.is_edge(&row) {
-                self.corners.edge(&row, first, out, set);
+            if self.corners.is_exact(&row) {
+                self.corners.exact_row(&row, first, out, set);
             } else {
                 self.corners.each(&row, 0, first, out, |vertex, x| (vertex.x, vertex.lit) = (x, Lit::Unknown));
                 self.corners.each(&row, 1, first, out, |vertex, y| vertex.y = y);
