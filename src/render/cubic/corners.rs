@@ -1,13 +1,11 @@
 //! Corners of a grid: ⌊256·S⌋, exact on edges, within 1/128 pixel inside.
 //!
-//! On an edge, and at the ends of a row, values come from [`value_at`], less than 16 units off, and the edge's own control points
-//! decide where that is not enough: patches on both sides of an edge get equal bits. Inside, rows are walked by differences
-//! where values have bits enough.
-//! Wild nets, for which values have few bits, are exact inside, too.
+//! On an edge, and at the ends of a row, values come from [`at`], less than 16 units off, and the edge's own control points
+//! decide where that is not enough: patches on both sides of an edge get equal bits. Wild nets, for which values have few bits,
+//! are exact inside, too.
 
 use super::slopes::{RowSlopes, Slopes};
-use super::steps::value_at;
-use super::{Piece, RowCubic};
+use super::{Cubic, Piece, RowCubic, at};
 use crate::patch::SurfaceNet;
 
 /// Fraction bits of corners.
@@ -21,10 +19,6 @@ const DOUBT_IF_CUT: i32 = 32;
 /// a segment has 32 pixels at most.
 const LEAST_BITS: u32 = 14;
 const MOST_SEGMENTS: u32 = 256;
-
-/// Walks of this many corners are less than 128 units off, 1/8 corner unit of values with at least this F.
-const RUN: usize = 16;
-const LEAST_TO_WALK: u32 = 18;
 
 /// Binomial coefficients of degree 3 and less.
 const CHOICES: [[u32; 4]; 4] = [[1, 0, 0, 0], [1, 1, 0, 0], [1, 2, 1, 0], [1, 3, 3, 1]];
@@ -55,12 +49,18 @@ pub(in crate::render) struct CornerRow {
     ends: [[i32; 2]; 3],
 }
 
+/// The cubic of a row by its powers: there are bits for that.
+#[inline(always)]
+fn by_powers([start, slope, bend, last]: RowCubic) -> Cubic {
+    [start, slope >> 1, bend.wrapping_shl(1), last.wrapping_shl(2)]
+}
+
 impl<'n> Corners<'n> {
     /// The grid of a net with so many segments; rows run along s if `is_turned`.
     #[inline(always)]
     pub(in crate::render) fn new(net: SurfaceNet<'n>, steps: (u32, u32), is_turned: bool, steepest: u32) -> Self {
         let mut piece = Piece::blank(net, steps, u8::from(is_turned));
-        piece.set_up::<true>(steepest);
+        piece.set_up::<false>(steepest);
         let start = piece.origin.map(|c| c - (1 << 15));
         let (up, less) = (piece.bits.saturating_sub(16), 16_u32.saturating_sub(piece.bits));
         let margin = if piece.is_cut { DOUBT_IF_CUT } else { DOUBT };
@@ -104,13 +104,13 @@ impl<'n> Corners<'n> {
         out: &mut [T],
         set: impl Fn(&mut T, [i32; 3]),
     ) {
-        let (along, across) = (&self.piece.along, &self.piece.across);
+        let (along, across, cubics) = (&self.piece.along, &self.piece.across, row.cubics.map(by_powers));
         for (i, out) in (first..).zip(out) {
             let t = along.half(2 * i);
             if (i == 0 || i == along.steps) && (row.j == 0 || row.j == across.steps) {
                 set(out, self.tip([i, row.j]));
             } else {
-                let exact = |axis: usize| self.exact(axis, [i, row.j], value_at(&row.cubics[axis], t));
+                let exact = |axis: usize| self.exact(axis, [i, row.j], at(&cubics[axis], t));
                 set(out, [exact(0), exact(1), exact(2)]);
             }
         }
@@ -126,23 +126,14 @@ impl<'n> Corners<'n> {
         out: &mut [T],
         set: impl Fn(&mut T, i32),
     ) {
-        let (base, fraction, along) = (self.base[axis], self.fraction[axis], &self.piece.along);
-        let corner = |value: i32| (value << self.doublings >> self.shift).wrapping_add(base);
-        let cubic = &row.cubics[axis];
-        if self.piece.bits < LEAST_TO_WALK {
-            for (i, out) in (first..).zip(out) {
-                set(out, corner(value_at(cubic, along.half(2 * i)).wrapping_add(fraction)));
-            }
-            return;
-        }
-        for (k, run) in (0..).zip(out.chunks_mut(RUN)) {
-            let start = first.wrapping_add(k * RUN as u32);
-            let mut line = self.piece.differences.line(cubic, along.half(2 * start), fraction);
-            for out in run {
-                set(out, corner(line.value));
-                line.step();
-                core::hint::black_box(());
-            }
+        let (base, fraction) = (self.base[axis], self.fraction[axis]);
+        let (cubic, step) = (by_powers(row.cubics[axis]), 2 * self.piece.along.near());
+        let mut t = first.wrapping_mul(step);
+        for out in out {
+            let value = at(&cubic, t as i32).wrapping_add(fraction);
+            set(out, (value << self.doublings >> self.shift).wrapping_add(base));
+            t = t.wrapping_add(step);
+            core::hint::black_box(());
         }
     }
 
