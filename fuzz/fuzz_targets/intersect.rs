@@ -7,8 +7,8 @@ mod workspace;
 use arbitrary::{Result, Unstructured};
 use embedded_surfaces::geometry::{Point3, Vector3};
 use embedded_surfaces::intersect::{
-    Held, Hit, HitKind, I16F48, IntersectError, IsoCurve, Options, Plane, Room, SpaceCurve, curve_points, intersect, project,
-    section,
+    Held, Hit, HitKind, I16F48, IntersectError, IsoCurve, Options, Plane, Room, SpaceCurve, curve_points, intersect,
+    project, section,
 };
 use embedded_surfaces::num::{I16F16, I32F32};
 use embedded_surfaces::patch::{
@@ -111,7 +111,8 @@ fn lines(u: &mut Unstructured<'_>, one: &Patch, net: SurfaceNet<'_>) -> Result<(
     let at = I16F48::from_bits(u.int_in_range(0..=1 << 48)?);
     let weights = one.weights.as_ref().map(|w| RationalCurveNet::new(curve, &w[..count]));
     let iso = one.net().map(|own| IsoCurve::new(own, held, at).ok());
-    let curves = [Some(SpaceCurve::from(curve)), weights.and_then(|w| w.ok()).map(Into::into), iso.flatten().map(Into::into)];
+    let curves =
+        [Some(SpaceCurve::from(curve)), weights.and_then(|w| w.ok()).map(Into::into), iso.flatten().map(Into::into)];
     for curve in curves.into_iter().flatten() {
         let mut room = [Hit::BLANK; 64];
         let Ok(hits) = curve_points(curve, net, &mut room) else { continue };
