@@ -138,7 +138,7 @@ fn arrangement(lines: &[Line]) -> Option<(usize, usize)> {
 fn branches_of_two_and_three_lines() {
     let mut numbers = Numbers(7);
     let mut tried = [0; 4];
-    while tried[2] < 16 || tried[3] < 16 {
+    while tried[2] < 8 || tried[3] < 8 {
         let count = 2 + usize::from(numbers.next(0, 9) > 0);
         let lines: Vec<Line> = (0..count).map(|_| numbers.line()).collect();
         let (Some((curves, branches)), Some([a, b])) = (arrangement(&lines), pair(&lines, &mut numbers)) else {
@@ -158,7 +158,7 @@ fn branches_of_two_and_three_lines() {
 fn tangential_lines() {
     let mut numbers = Numbers(11);
     let mut tried = 0;
-    while tried < 12 {
+    while tried < 8 {
         let line = numbers.line();
         let (Some(inside), Some([a, b])) = (cuts(&line), pair(&[line, line], &mut numbers)) else { continue };
         tried += 1;
@@ -173,7 +173,7 @@ fn tangential_lines() {
 fn shared_edges_with_a_line_across() {
     let mut numbers = Numbers(13);
     let mut tried = 0;
-    while tried < 24 {
+    while tried < 12 {
         let line = numbers.line();
         let edge = [1, 0, HALF];
         let Some([a, b]) = cuts(&line).and_then(|_| pair(&[edge, line], &mut numbers)) else { continue };
