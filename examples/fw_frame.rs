@@ -37,45 +37,18 @@ fn main() -> std::io::Result<()> {
 }
 
 #[cfg(all(target_os = "none", target_arch = "arm"))]
+#[path = "board/stack.rs"]
+mod stack;
+
+#[cfg(all(target_os = "none", target_arch = "arm"))]
 mod board {
-    use crate::{Buffers, GRID, frame};
+    use crate::{Buffers, GRID, frame, stack};
     use core::cell::RefCell;
     use core::fmt::Write;
     use cortex_m::interrupt::Mutex;
     use cortex_m_semihosting::{debug, hio};
 
     static BUFFERS: Mutex<RefCell<Buffers>> = Mutex::new(RefCell::new(Buffers::new()));
-    const PAINT: u32 = 0xA5A5_5A5A;
-
-    unsafe extern "C" {
-        static mut __sdata: u32;
-        static mut __sheap: u32;
-        static mut _stack_start: u32;
-    }
-
-    /// The first word of RAM, the first after the statics, the end of the stack.
-    fn memory() -> [usize; 3] {
-        // Addresses alone.
-        [(&raw const __sdata) as usize, (&raw const __sheap) as usize, (&raw const _stack_start) as usize]
-    }
-
-    #[inline(never)]
-    fn paint() {
-        let local = 0_u32;
-        let here = (&raw const local) as usize & !3;
-        for address in (memory()[1]..here - 64).step_by(4) {
-            // SAFETY: RAM between the statics and this frame, which nobody uses.
-            unsafe { (address as *mut u32).write_volatile(PAINT) };
-        }
-    }
-
-    fn used() -> usize {
-        let [start, statics, end] = memory();
-        // SAFETY: the same words.
-        let is_painted = |address: &usize| unsafe { (*address as *const u32).read_volatile() } == PAINT;
-        let lowest = (statics..end).step_by(4).find(|address| !is_painted(address)).unwrap_or(end);
-        (statics - start) + (end - lowest)
-    }
 
     /// Out of line: the bytes of a row and the drawing of a band need not stand on the stack together.
     #[inline(never)]
@@ -91,13 +64,13 @@ mod board {
             let mut buffers = BUFFERS.borrow(token).try_borrow_mut().ok()?;
             frame::draw::<GRID, _, _>(&mut buffers, |row| sent &= send(&mut out, row))
         })?;
-        writeln!(hio::hstderr().ok()?, "RAM {}", used()).ok()?;
+        writeln!(hio::hstderr().ok()?, "RAM {}", stack::used()).ok()?;
         sent.then_some(())
     }
 
     #[cortex_m_rt::entry]
     fn main() -> ! {
-        paint();
+        stack::paint();
         leave(run().is_some())
     }
 

@@ -1,5 +1,8 @@
 //! Pairs of patches that meet in curves of different kinds: c01, c04 and c12 of the reference cases.
 
+#[path = "nets.rs"]
+mod nets;
+
 use embedded_surfaces::const_net;
 use embedded_surfaces::patch::{BicubicPatch, CubicTriangle, Surface, SurfaceNet};
 
@@ -27,18 +30,7 @@ static LEVEL: BicubicPatch = const_net!(BicubicPatch::from_ints([
     [[108, -340, 46], [89, -133, 52], [102, 102, 50], [91, 318, 49]],
     [[304, -345, 52], [308, -131, 48], [321, 96, 50], [314, 295, 46]],
 ]));
-static LEAF: CubicTriangle = const_net!(CubicTriangle::from_ints([
-    [180, 20, 150],
-    [100, 60, 100],
-    [200, 180, 380],
-    [100, 120, 160],
-    [160, 140, 400],
-    [300, 120, 100],
-    [40, 200, 60],
-    [200, 200, 360],
-    [100, 220, 60],
-    [300, 200, 300],
-]));
+static LEAF: CubicTriangle = const_net!(CubicTriangle::from_ints(nets::SEED_P));
 static SHEET: BicubicPatch = const_net!(BicubicPatch::from_ints([
     [[5, -25, 190], [7, 96, 200], [0, 219, 210], [0, 330, 200]],
     [[125, -19, 205], [121, 92, 215], [122, 224, 200], [120, 335, 195]],

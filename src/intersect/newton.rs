@@ -159,11 +159,23 @@ impl<'a> Pair<'a> {
     }
 
     /// The point where an edge of one patch meets the other, near `at`; the edge's parameter and the other's two move.
+    pub(super) fn on_edge(&self, side: usize, edge: usize, at: Places) -> Option<Spot> {
+        let sheet = &self.sheets[side & 1];
+        let onto = |place: Place| sheet.edge_place(edge, sheet.edge_parameter(edge, place));
+        self.on_line(side, sheet.edge_direction(edge).map(Real::int), &onto, at)
+    }
+
+    /// The same for a line in a direction of the domain; `onto` keeps places on it.
     #[inline(never)]
-    pub(super) fn on_edge(&self, side: usize, edge: usize, mut at: Places) -> Option<Spot> {
+    pub(super) fn on_line(
+        &self,
+        side: usize,
+        direction: [Real; 2],
+        onto: &dyn Fn(Place) -> Place,
+        mut at: Places,
+    ) -> Option<Spot> {
         let (one, other) = (side & 1, 1 - (side & 1));
-        let (sheet, direction) = (&self.sheets[one], self.sheets[one].edge_direction(edge));
-        at[one] = sheet.edge_place(edge, sheet.edge_parameter(edge, at[one]));
+        at[one] = onto(at[one]);
         let mut jets = [Jet::BLANK; 2];
         for round in 0..LIMIT {
             self.jets_to(at, 1, &mut jets)?;
@@ -171,7 +183,7 @@ impl<'a> Pair<'a> {
             if round > 0 && r.square() <= self.accept.square() {
                 return Some(self.spot(at, &jets));
             }
-            let [a, b] = direction.map(Real::int);
+            let [a, b] = direction;
             let along = jets[one].first[0] * a + jets[one].first[1] * b;
             let normal = jets[other].normal();
             let across = normal.dot(along);
@@ -180,8 +192,7 @@ impl<'a> Pair<'a> {
             }
             let step = normal.dot(r) / across;
             at[other] = shifted(at[other], pull_back(&jets[other].first, normal, along * step - r));
-            let parameter = sheet.edge_parameter(edge, shifted(at[one], [a * step, b * step]));
-            at[one] = sheet.edge_place(edge, parameter);
+            at[one] = onto(shifted(at[one], [a * step, b * step]));
         }
         None
     }

@@ -430,7 +430,12 @@ impl<'r> Part<'r> {
 
     /// The cone of normals.
     fn normals(&self) -> Cone {
-        let mut points = [[0; 3]; ROOM];
+        if self.count <= 16 { self.normals_in::<16>() } else { self.normals_in::<ROOM>() }
+    }
+
+    #[inline(never)]
+    fn normals_in<const POINTS: usize>(&self) -> Cone {
+        let mut points = [[0; 3]; POINTS];
         let radius = self.centre(&mut points);
         let Some(along_u) = self.directions(&points, radius, 0) else { return Cone::UNKNOWN };
         let Some(along_v) = self.directions(&points, radius, 1) else { return Cone::UNKNOWN };
@@ -450,13 +455,13 @@ impl<'r> Part<'r> {
     /// The directions of a line's tangents.
     #[inline(never)]
     pub(super) fn tangents(&self) -> Option<Directions> {
-        let mut points = [[0; 3]; ROOM];
+        let mut points = [[0; 3]; MAX_DEGREE + 1];
         let radius = self.centre(&mut points);
         self.directions(&points, radius, 0)
     }
 
     /// Writes weighted control points about the middle with at most 29 bits; how far any point of the part is from it.
-    fn centre(&self, points: &mut [[i64; 3]; ROOM]) -> i64 {
+    fn centre(&self, points: &mut [[i64; 3]]) -> i64 {
         let middle = three!(|k| (self.low[k] >> 1) + (self.high[k] >> 1));
         let size = self.size().max(1);
         let shift = (64 - size.leading_zeros() as i32 - 28).max(0);
@@ -472,7 +477,7 @@ impl<'r> Part<'r> {
     ///
     /// Beyond the part by a share ε, each of n − 1 steps of de Casteljau's algorithm moves a difference by ε times another
     /// less itself: 2 n ε times the longest in all, and directions turn by that over the shortest.
-    fn directions(&self, points: &[[i64; 3]; ROOM], radius: i64, along: usize) -> Option<Directions> {
+    fn directions(&self, points: &[[i64; 3]], radius: i64, along: usize) -> Option<Directions> {
         let mut sum = [0_i64; 3];
         self.differences(along, |a, b| {
             let [p, q] = [a, b].map(|k| points.get(k).copied().unwrap_or([0; 3]));

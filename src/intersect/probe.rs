@@ -48,10 +48,10 @@ fn grid<'b>(
 
 /// The point of a patch nearest to `point`.
 ///
-/// The nearest vertex of a grid of 2^depth cells a side is where Newton's method begins; it minimises the distance with
-/// second derivatives, within the domain. What comes out is a local minimum, no farther than that vertex: the nearest point
-/// of all unless the patch has another minimum in a cell none of whose vertices is as near. Buffers: the vertices of
-/// one grid ([`Room`](super::Room) has those of two), one box or more.
+/// Newton's method begins at every vertex of a grid of 2^depth cells a side that is no farther than its neighbours, on a border
+/// than its neighbours there; it minimises the distance with second derivatives, within the domain. What comes out is the least
+/// of these minima: the nearest point of all unless the distance has a minimum so shallow that no vertex shows it. Buffers: the
+/// vertices of one grid ([`Room`](super::Room) has those of two), one box or more.
 ///
 /// # Errors
 /// [`IntersectError::Depth`], [`IntersectError::VertexBuffer`], [`IntersectError::BoxBuffer`].
@@ -78,25 +78,67 @@ pub fn project(
     let mut room = [[0; 4]; ROOM];
     let sheet = Sheet::new(net, &mut room);
     let target = point.to_array().map(Coord::bits);
-    let mut best = ([0; 2], i128::MAX);
-    let n = 1_usize << depth;
-    for i in 0..=n {
-        for j in 0..=if grid.triangle { n - i } else { n } {
-            let v = grid.vertex(i, j);
-            let square = (0..3).fold(0, |s, k| s + i128::from(i64::from(v[k]) - target[k]).pow(2));
-            if square < best.1 {
-                best = ([i, j].map(|k| (k as i64) << (48 - depth)), square);
+    let square = |(i, j): (usize, usize)| {
+        let v = grid.vertex(i, j);
+        (0..3).fold(0, |s, k| s + i128::from(i64::from(v[k]) - target[k]).pow(2))
+    };
+    let c = target.map(|t| t << (POINT_BITS - 16));
+    let mut best: Option<(Place, Real)> = None;
+    for i in 0..=grid.last() {
+        for j in 0..=grid.last() {
+            if !grid.has_vertex(i, j) || !is_nearest_around(&grid, (i, j), square) {
+                continue;
+            }
+            let place = descend(&sheet, [i, j].map(|k| (k as i64) << (48 - depth)), c);
+            let Some(far) = sheet.eval(place, 0).map(|jet| difference(jet.point, c).square()) else { continue };
+            if best.is_none_or(|(_, least)| far < least) {
+                best = Some((place, far));
             }
         }
     }
-    let c = target.map(|t| t << (POINT_BITS - 16));
-    let place = descend(&sheet, best.0, c);
+    let place = best.map_or([0; 2], |(place, _)| place);
     let position = sheet.eval(place, 0).map_or(c, |jet| jet.point);
     Ok(Projection {
         parameters: place.map(I16F48::from_bits),
         position: Point3::from_array(position.map(I20F44::from_bits)),
         distance: I20F44::from_bits(difference(position, c).norm().nearest(POINT_BITS)),
     })
+}
+
+impl Grid<'_> {
+    /// The largest index.
+    const fn last(&self) -> usize {
+        1 << self.depth
+    }
+
+    fn has_vertex(&self, i: usize, j: usize) -> bool {
+        i <= self.last() && j <= self.last() && (!self.triangle || i + j <= self.last())
+    }
+
+    fn is_on_border(&self, (i, j): (usize, usize)) -> bool {
+        i.min(j) == 0 || if self.triangle { i + j == self.last() } else { i.max(j) == self.last() }
+    }
+}
+
+/// Whether no neighbour of a vertex along a line of the grid is less; for one on a border, none on the border: what is least there
+/// need not be so inside. Not those across: a valley may run between them.
+fn is_nearest_around(grid: &Grid<'_>, (i, j): (usize, usize), square: impl Fn((usize, usize)) -> i128) -> bool {
+    let (own, is_on_border) = (square((i, j)), grid.is_on_border((i, j)));
+    // Below 0 there is none: the largest number is no index.
+    let beside = [
+        (i.wrapping_sub(1), j),
+        (i + 1, j),
+        (i, j.wrapping_sub(1)),
+        (i, j + 1),
+        (i.wrapping_sub(1), j + 1),
+        (i + 1, j.wrapping_sub(1)),
+    ];
+    // The diagonals of cells are lines of a triangular grid, one of its borders is one.
+    let count = if grid.triangle { 6 } else { 4 };
+    beside
+        .into_iter()
+        .take(count)
+        .all(|(k, l)| !grid.has_vertex(k, l) || (is_on_border && !grid.is_on_border((k, l))) || square((k, l)) >= own)
 }
 
 impl Sheet<'_> {

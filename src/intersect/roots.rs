@@ -9,7 +9,7 @@
 
 use super::IntersectError;
 use super::line::Line;
-use super::newton::{Pair, Places, Spot, difference, pull_back, shifted};
+use super::newton::{Pair, Spot};
 use super::part::{Directions, Part, Region};
 use super::sheet::{ONE, Place};
 use super::trace::BORDER;
@@ -105,30 +105,6 @@ impl Pair<'_> {
         let spot = self.line_spot(line, t, near)?;
         let on = spot.residual <= self.touching() && self.sheets[other].contains(spot.at[other], slack);
         on.then_some(spot)
-    }
-
-    /// The point where a line of one patch meets the other, near `at`.
-    #[inline(never)]
-    fn on_line(&self, line: &Line, mut at: Places) -> Option<Spot> {
-        let (one, other) = (line.side & 1, 1 - (line.side & 1));
-        let direction = line.direction();
-        for round in 0..16 {
-            let jets = self.jets(at, 1)?;
-            let r = difference(jets[other].point, jets[one].point);
-            if round > 0 && r.square() <= self.accept.square() {
-                return Some(self.spot(at, &jets));
-            }
-            let along = jets[one].first[0] * direction[0] + jets[one].first[1] * direction[1];
-            let normal = jets[other].normal();
-            let across = normal.dot(along);
-            if across.is_zero() {
-                return None;
-            }
-            let step = normal.dot(r) / across;
-            at[other] = shifted(at[other], pull_back(&jets[other].first, normal, along * step - r));
-            at[one] = shifted(at[one], direction.map(|d| d * step));
-        }
-        None
     }
 }
 
@@ -235,7 +211,7 @@ impl Search<'_, '_, '_> {
         let at = if self.line.side & 1 == 0 { [start, place] } else { [place, start] };
         let found = match self.line.edge {
             Some(edge) => self.pair.on_edge(self.line.side, edge, at),
-            None => self.pair.on_line(&self.line, at),
+            None => self.pair.on_line(self.line.side, self.line.direction(), &|place| place, at),
         };
         let Some(spot) = found else { return false };
         let (t, place) = self.split(&spot);

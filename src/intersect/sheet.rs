@@ -45,6 +45,11 @@ impl Jet {
     pub(super) fn normal(&self) -> V3 {
         self.first[0].cross(self.first[1])
     }
+
+    /// Whether the normals' angle has a cosine above 1 − 2^-10.
+    pub(super) fn is_parallel(&self, other: &Self) -> bool {
+        self.normal().unit().dot(other.normal().unit()).abs() > Real::ONE - Real::power(-10)
+    }
 }
 
 /// A patch ready for evaluation.

@@ -124,10 +124,7 @@ impl<'s, 'a> Solver<'s, 'a, '_> {
         }
         let feet = both!(|s| self.pair.foot(s, at[s], point));
         let [Some((u, a)), Some((v, b))] = feet else { return false };
-        let cosine = a.normal().unit().dot(b.normal().unit()).abs();
-        self.pair.inside([u, v], 0)
-            && difference(a.point, b.point).norm() <= self.pair.touching()
-            && cosine > Real::ONE - Real::power(-10)
+        self.pair.inside([u, v], 0) && difference(a.point, b.point).norm() <= self.pair.touching() && a.is_parallel(&b)
     }
 
     /// Whether a point within a region lies on both surfaces, which are parallel there.
@@ -135,8 +132,7 @@ impl<'s, 'a> Solver<'s, 'a, '_> {
         let Some(border) = self.out.points.get(near) else { return false };
         let feet = both!(|s| self.pair.foot(s, border.places()[s], point));
         let [Some((_, a)), Some((_, b))] = feet else { return false };
-        let cosine = a.normal().unit().dot(b.normal().unit()).abs();
-        cosine > Real::ONE - Real::power(-10)
+        a.is_parallel(&b)
     }
 
     /// Whether the curve at a spot goes on inside both patches, in the spot's direction, by a share of 2^-`shift`.
