@@ -34,11 +34,16 @@ const ZEROS: [u8; 256] = {
 };
 
 const fn zeros_by_steps(value: u32) -> u32 {
-    let (short, zeros) = if value < 1 << 16 { (value, 16) } else { (value >> 16, 0) };
-    if short < 1 << 8 {
-        zeros + 8 + ZEROS[short as usize & 255] as u32
+    if value < 1 << 16 { zeros_of_half(value) } else { zeros_of_half(value >> 16) - 16 }
+}
+
+/// The leading zeros of a number below 2^16.
+#[inline(always)]
+const fn zeros_of_half(value: u32) -> u32 {
+    if value < 1 << 8 {
+        24 + ZEROS[value as usize & 255] as u32
     } else {
-        zeros + ZEROS[(short >> 8) as usize & 255] as u32
+        16 + ZEROS[(value >> 8) as usize & 255] as u32
     }
 }
 
@@ -65,15 +70,11 @@ const fn floor_by_table(d: u32) -> u32 {
     // Within 2^-8 of itself; a step of Newton's method leaves it at most 2 too small.
     let seed = SEEDS[(d >> 8) as usize & 127] as u32;
     let error = (1_u32 << 31).wrapping_sub((seed << 8).wrapping_mul(d)) as i32;
-    let mut quotient = (seed << 8).wrapping_add(((error >> 8).wrapping_mul(seed as i32) >> 15) as u32);
-    let mut rest = (1_u32 << 31).wrapping_sub(quotient.wrapping_mul(d));
-    if rest >= d {
-        (quotient, rest) = (quotient + 1, rest.wrapping_sub(d));
-    }
-    if rest >= d {
-        quotient += 1;
-    }
-    quotient
+    let quotient = (seed << 8).wrapping_add(((error >> 8).wrapping_mul(seed as i32) >> 15) as u32);
+    let rest = (1_u32 << 31).wrapping_sub(quotient.wrapping_mul(d)) as i32;
+    // What is still missing, by signs: it takes no branch.
+    let (once, twice) = ((d as i32 - 1).wrapping_sub(rest) >> 31, (2 * d as i32 - 1).wrapping_sub(rest) >> 31);
+    quotient.wrapping_sub((once + twice) as u32)
 }
 
 /// 2^31 over the 16 leading bits of a positive number, rounded down, at most 2^16 − 1; and the number's leading zeros.
@@ -87,7 +88,7 @@ pub(crate) const fn reciprocal(value: u32) -> (u32, u32) {
 /// number's leading zeros.
 #[inline(always)]
 pub(crate) const fn exact_reciprocal(value: u32) -> (u32, u32) {
-    let zeros = leading_zeros(value);
+    let zeros = if HAS_DIVIDER { value.leading_zeros() } else { zeros_of_half(value) };
     let d = value << (zeros & 31) >> 16;
     // The bit is set but for 0, which has no reciprocal: so the compiler sees that nothing is divided by it.
     let quotient = if HAS_DIVIDER { (1_u32 << 31) / (d | 1 << 15) } else { floor_by_table(d) };

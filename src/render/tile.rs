@@ -107,7 +107,7 @@ impl<'b, P: Copy> Tile<'b, P> {
             return Err(error);
         };
         fill(colour, background);
-        fill(depth, FAR);
+        fill_aligned(depth, FAR);
         Ok(Self { area, colour, depth })
     }
 
@@ -153,6 +153,21 @@ fn fill<T: Copy>(buffer: &mut [T], value: T) {
     }
     others.as_flattened_mut().fill(value);
     rest.fill(value);
+}
+
+/// Fills a buffer of depths, by whole words between its ends.
+fn fill_aligned(buffer: &mut [u16], value: u16) {
+    let (start, words, end) = bytemuck::pod_align_to_mut::<u16, [u32; 4]>(buffer);
+    let word = u32::from(value) << 16 | u32::from(value);
+    // Opaque and in registers of their own: four of them are stored at once.
+    let [a, b, c, d] = core::hint::black_box([word; 4]);
+    let (chunks, others) = words.as_chunks_mut::<4>();
+    for chunk in chunks {
+        *chunk = [[a, b, c, d]; 4];
+    }
+    others.fill([word; 4]);
+    start.fill(value);
+    end.fill(value);
 }
 
 /// Whether `depth` is nearer than what is stored; it is stored then, as drawn.
