@@ -152,7 +152,7 @@ fn bounds(c: &[i32; 4]) -> (i32, i32) {
 
 /// The planes of depth and level over a facet, from the pixel `start` on: through the mean of the corners, a quarter of
 /// `sums`, along both diagonals as the corners say.
-#[inline(always)]
+#[inline(never)]
 fn planes(quad: &Quad, sums: [i32; 2], start: [i32; 2]) -> [Plane; 2] {
     let [x, y] = [quad.corners.each_ref().map(|c| c.x), quad.corners.each_ref().map(|c| c.y)];
     let (p, q) = ([x[2] - x[0], y[2] - y[0]], [x[3] - x[1], y[3] - y[1]]);
@@ -307,8 +307,9 @@ impl<P: Paint> Filler<'_, '_, P> {
             let (first, last) = (i32::from(*first), i32::from(*last));
             let range = offset.wrapping_add(first) as usize..offset.wrapping_add(last) as usize;
             if first < last
-                && let Some(colours) = colours.get_mut(range.clone())
-                && let Some(depths) = stored.get_mut(range)
+                && range.end <= stored.len()
+                && range.start < range.end
+                && let (Some(colours), Some(depths)) = (colours.get_mut(range.clone()), stored.get_mut(range))
             {
                 let z = z.wrapping_add(depth.by_x.wrapping_mul(first)) as u32;
                 let s = s.wrapping_add(level.by_x.wrapping_mul(first));
