@@ -28,8 +28,8 @@ use embedded_surfaces::patch::BicubicPatch;
 use embedded_surfaces::render::{Facet, Notes};
 use frame::{AREA, BANDS, Picture, ROWS};
 
-/// Facets of a list: the frame has 867.
-const FACETS: usize = 1000;
+/// Facets of a list: the frame has 773.
+const FACETS: usize = 800;
 
 /// A whole frame, and a list.
 type Buffers = frame::Buffers<{ AREA.pixels() }, FACETS, { FACETS + BANDS }>;
