@@ -66,9 +66,9 @@ pub(crate) const SETUPS: [Setup; 8] = [
     setup(M3, (160, 128, 16), false, Fill::Exact),
     setup(M3, (160, 128, 16), false, Fill::Grid(600)),
     setup(M4, (320, 240, 16), false, Fill::Exact),
-    setup(M4, (320, 240, 16), false, Fill::Grid(1000)),
+    setup(M4, (320, 240, 16), false, Fill::Grid(800)),
     setup(C3, (320, 240, 16), false, Fill::Exact),
-    setup(C3, (320, 240, 48), false, Fill::Grid(1000)),
+    setup(C3, (320, 240, 48), false, Fill::Grid(800)),
 ];
 
 /// How the patches meet, found by the compiler.
