@@ -56,16 +56,21 @@ fn edge(top: &Vertex, bottom: &Vertex, row: i32) -> [i32; 2] {
     [(top.x << 8).wrapping_add(moved), step]
 }
 
-/// Writes where a facet's spans start and end, row by row, counted from `column`. Whether both flanks are complete.
+/// Writes where a facet's spans start and end in the rows from `row` to before `last`, counted from `column`. Whether both
+/// flanks are complete, in all rows of the facet; where some are not asked for it is `CUT`.
 #[inline(never)]
-fn flanks(quad: &Quad, column: i32, ends: &mut Ends) -> bool {
+fn flanks<const CUT: bool>(quad: &Quad, column: i32, [row, last]: [i32; 2], ends: &mut Ends) -> bool {
     // A little less than one pixel more: shifted right it is the first centre.
     let start = 0xffff_i32.wrapping_sub(column << 16);
     let [first, end] = quad.rows;
-    let mut side = |top: &Vertex, bottom: &Vertex, [row, after]: [i32; 2], is_end: usize| {
-        let from = row.wrapping_sub(first) as usize;
-        let Some(ends) = ends.get_mut(from..after.wrapping_sub(first) as usize) else { return 0 };
-        let [x, step] = edge(top, bottom, row);
+    let mut side = |top: &Vertex, bottom: &Vertex, [from, to]: [i32; 2], is_end: usize| {
+        let count = to.wrapping_sub(from);
+        let (from, to) = if CUT { (from.max(row), to.min(last)) } else { (from, to) };
+        if CUT && from >= to {
+            return count;
+        }
+        let Some(ends) = ends.get_mut(from.wrapping_sub(row) as usize..to.wrapping_sub(row) as usize) else { return 0 };
+        let [x, step] = edge(top, bottom, from);
         let mut x = x.wrapping_add(start);
         for end in ends {
             end[is_end] = (x >> 16) as u8;
@@ -73,7 +78,7 @@ fn flanks(quad: &Quad, column: i32, ends: &mut Ends) -> bool {
             // Sides are short: unrolled, this loop would cost more.
             core::hint::black_box(());
         }
-        after.wrapping_sub(row)
+        count
     };
     let (mut from, mut rows) = (&quad.corners[3], 0);
     let mut above = centre(from.y);
@@ -87,7 +92,7 @@ fn flanks(quad: &Quad, column: i32, ends: &mut Ends) -> bool {
         }
         (from, above) = (to, below);
     }
-    rows == 2 * (end - first)
+    rows == 2 * (end - first) && (!CUT || end - first <= ROWS as i32)
 }
 
 /// A linear function of the pixel, modulo 2^32: right wherever its value fits.
@@ -287,11 +292,13 @@ impl<P: Paint> Filler<'_, '_, P> {
             return false;
         }
         let column = (a.x >> 8) - (ROWS as i32 - 1);
-        if !flanks(quad, column, &mut self.ends) {
-            return true;
-        }
-        let rows = row.wrapping_sub(first) as usize..end.wrapping_sub(first) as usize;
-        let Some(ends) = self.ends.get_mut(rows) else { return true };
+        let is_complete = if [row, end] == quad.rows {
+            flanks::<false>(quad, column, [row, end], &mut self.ends)
+        } else {
+            flanks::<true>(quad, column, [row, end], &mut self.ends)
+        };
+        let rows = end.wrapping_sub(row) as usize;
+        let (true, Some(ends)) = (is_complete, self.ends.get_mut(..rows)) else { return true };
         if quad.is_wide && is_beyond([a.x, b.x, c.x, d.x], left, right) {
             clip(ends, [left.wrapping_sub(column), right.wrapping_sub(column)]);
         }
