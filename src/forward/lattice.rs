@@ -105,6 +105,12 @@ impl<'a> Lattice<'a> {
         &self.budget
     }
 
+    /// What is walked, for what walks it by itself.
+    #[cfg(forward_asm = "v7m")]
+    pub(super) fn plan(&self) -> (&Form<'a>, &Budget) {
+        (&self.form, &self.budget)
+    }
+
     /// The number of points: (n_r+1)(n_s+1), or (n+1)(n+2)/2 for a triangle.
     #[must_use]
     pub fn point_count(&self) -> u64 {

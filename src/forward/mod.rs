@@ -77,6 +77,7 @@ mod run;
 mod steps;
 mod table;
 mod tangent;
+mod visibility;
 mod visit;
 mod walk;
 
@@ -84,6 +85,7 @@ pub use budget::{Accumulator, Budget, LatticeError};
 pub use curve::{CurveLattice, CurvePoint, CurvePoints, UnitStep, UnitSteps};
 pub use lattice::{Lattice, LatticePoint, LatticePoints, RowStep, RowSteps};
 pub use steps::{Sampling, Steps};
+pub use visibility::{Tags, VisibilityBuffer, VisibilityError, Visible};
 
 pub(crate) use budget::MAX_STEPS;
 pub(crate) use estimate::Estimate;
