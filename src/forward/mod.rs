@@ -68,6 +68,7 @@ mod joined;
 mod kernel;
 mod lanes;
 mod lattice;
+mod monomial;
 mod piece;
 #[cfg(feature = "graphics")]
 mod plane;
