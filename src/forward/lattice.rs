@@ -118,6 +118,9 @@ impl<'a> Lattice<'a> {
     }
 
     /// Calls `f` with every point in row order: the fast path.
+    ///
+    /// With the feature `asm` runs of points are made by assembly on ARMv6-M, where N is a power of two, the degree at most
+    /// 3 and two sub-lattices a row take 32 bits ([`for_each_unordered`](Self::for_each_unordered)).
     #[inline]
     pub fn for_each(&self, f: impl FnMut(LatticePoint)) {
         walk(&self.form, &self.budget, f);

@@ -4,7 +4,7 @@
 //! on, or stores its points. It reads the arrays that it is given references to and nothing else, writes to those that it
 //! may change and to its own stack, keeps what the calling convention asks to be kept, and returns for every count. No
 //! address is made of a coordinate without a comparison with the end of what is there. The loops are unrolled 32 or 64
-//! times and entered so that a row takes exactly its points.
+//! times and entered so that a row takes exactly its points, or the next multiple of four.
 //!
 //! | function | for | instructions a point |
 //! |---|---|---|
