@@ -9,7 +9,8 @@
 //! A line per row: `name: N instructions, P points, sum S`. F is how many fraction bits the net uses. Of each lattice
 //! * `generation` makes the points, set-up included; the sink is the wrapping sum of the coordinates;
 //! * `depth test and store` makes the same points, and the nearest of each pixel leaves 16 bits of depth and 16 of
-//!   colour; the sum is that of the depths. Clearing is not counted.
+//!   colour; the sum is that of the depths. Clearing is not counted;
+//! * `visibility buffer` is the same work as an operation of the crate, which may choose the order.
 //!
 //! The crate shades no lattice of the caller's: `scene, shaded` draws the patch by a [`Scene`] into a cleared [`Tile`],
 //! with the points and pieces that the renderer chooses, exact normals after the depth test; its points are counted, its
@@ -28,7 +29,7 @@ mod room;
 mod run;
 
 use core::hint::black_box;
-use embedded_surfaces::forward::{Lattice, Steps};
+use embedded_surfaces::forward::{Lattice, Steps, Tags, VisibilityBuffer};
 use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::patch::{BicubicPatch, CubicTriangle, QuinticTriangle, Surface, SurfaceNet};
 use embedded_surfaces::render::{Area, Fragment, Light, Scene, Style, Tile};
@@ -37,10 +38,11 @@ const AREA: Area = Area { x: 0, y: 0, width: 320, height: 240 };
 /// Fraction bits that the nets use.
 const FRACTIONS: [u32; 4] = [0, 4, 8, 16];
 
-/// A picture.
+/// Pictures.
 struct Screen {
     colour: [u16; AREA.pixels()],
     depth: [u16; AREA.pixels()],
+    visible: [u32; AREA.pixels()],
 }
 
 /// The nets of a number of fraction bits: the whole ones, with an inner point moved by 2^-bits.
@@ -104,7 +106,7 @@ fn generate(net: SurfaceNet<'_>, steps: u32, total: &mut Total) {
 fn store(net: SurfaceNet<'_>, steps: u32, screen: &mut Screen, total: &mut Total) {
     let lattice = Steps::uniform(steps).and_then(|steps| Lattice::new(net, steps));
     let Ok(lattice) = lattice else { return };
-    let Screen { colour, depth } = screen;
+    let Screen { colour, depth, .. } = screen;
     lattice.for_each(|p| {
         let (x, y) = (p.x as u32, p.y as u32);
         if x >= AREA.width || y >= AREA.height {
@@ -118,6 +120,17 @@ fn store(net: SurfaceNet<'_>, steps: u32, screen: &mut Screen, total: &mut Total
             (*depth, *colour) = (z, p.i as u16);
         }
     });
+    total.points = lattice.point_count() as u32;
+}
+
+/// The points into a visibility buffer, with the tags that [`store`] has as colours.
+#[inline(never)]
+fn visible(net: SurfaceNet<'_>, steps: u32, screen: &mut Screen, total: &mut Total) {
+    let lattice = Steps::uniform(steps).and_then(|steps| Lattice::new(net, steps));
+    let Ok(lattice) = lattice else { return };
+    let buffer = VisibilityBuffer::new(&mut screen.visible, AREA.width, AREA.height);
+    let Ok(mut buffer) = buffer else { return };
+    buffer.draw(&lattice, Tags { first: 0, by_i: 1, by_j: 0 });
     total.points = lattice.point_count() as u32;
 }
 
@@ -162,7 +175,8 @@ fn sum_of(values: &[u16]) -> i32 {
 
 /// Writes a line per row.
 pub(crate) fn report(out: &mut impl core::fmt::Write) -> core::fmt::Result {
-    let screen = room::room!(Screen, Screen { colour: [0; AREA.pixels()], depth: [0; AREA.pixels()] });
+    const CLEAR: Screen = Screen { colour: [0; AREA.pixels()], depth: [0; AREA.pixels()], visible: [0; AREA.pixels()] };
+    let screen = room::room!(Screen, CLEAR);
     writeln!(out, "nops: {} instructions, 1000 points, sum 0", counter::count(nops))?;
     for bits in FRACTIONS {
         let nets = Nets::with_fraction(bits).ok_or(core::fmt::Error)?;
@@ -194,7 +208,11 @@ fn lattice_rows(
     screen.depth.fill(u16::MAX);
     let instructions = counter::count(|| store(net, steps, screen, &mut total));
     total.sum = sum_of(&screen.depth);
-    write_row(out, (name, bits, "depth test and store"), instructions, &total)
+    write_row(out, (name, bits, "depth test and store"), instructions, &total)?;
+    screen.visible.fill(VisibilityBuffer::EMPTY);
+    let instructions = counter::count(|| visible(net, steps, screen, &mut total));
+    total.sum = screen.visible.iter().fold(0, |sum, entry| sum.wrapping_add((entry >> 16) as i32));
+    write_row(out, (name, bits, "visibility buffer"), instructions, &total)
 }
 
 fn scene_row(

@@ -1,5 +1,6 @@
-//! The forms of the engine against each other on the board: one by one, in row order, in any order, and the checksum, which
-//! is assembly with the feature `asm`. A line per lattice; `tests/firmware_forms.rs` compares them with the host's.
+//! The forms of the engine against each other on the board: one by one, in row order, in any order, and the checksum and the
+//! visibility buffer, which are assembly with the feature `asm`. A line per lattice; `tests/firmware_forms.rs` compares them
+//! with the host's.
 //!
 //! ```sh
 //! cargo run --release --target thumbv6m-none-eabi --features asm --example fw_forms
@@ -9,7 +10,7 @@
 #[path = "board/run.rs"]
 mod run;
 
-use embedded_surfaces::forward::{Lattice, LatticePoint, Steps};
+use embedded_surfaces::forward::{Lattice, LatticePoint, Steps, Tags, VisibilityBuffer};
 use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::patch::{SurfaceNet, TensorNet, TriangleNet};
 
@@ -26,6 +27,21 @@ const FRACTIONS: [u32; 3] = [0, 8, 16];
 /// Steps in the two directions; triangles take those that are equal.
 const STEPS: [(u32, u32); 11] =
     [(1, 1), (2, 2), (3, 3), (8, 8), (16, 16), (32, 32), (33, 33), (64, 64), (65, 65), (16, 64), (128, 32)];
+
+/// Pixels of a picture on a side.
+const SIDE: usize = 48;
+const SIDE_I32: i32 = SIDE as i32;
+
+/// Ranges of coordinates in a picture: inside of it, to its edges, beyond them.
+const PICTURES: [(i32, i32); 3] = [(3, 41), (0, SIDE_I32 - 1), (-9, SIDE_I32 + 5)];
+
+/// Tags that are equal, that count along rows, that go on from row to row, that wrap.
+const TAGS: [Tags; 4] = [
+    Tags::same(0xbeef),
+    Tags { first: 7, by_i: 1, by_j: 0 },
+    Tags { first: 0, by_i: 1, by_j: 33 },
+    Tags { first: 65_500, by_i: 3, by_j: 65_535 },
+];
 
 /// Numbers that look random.
 struct Random(u32);
@@ -45,6 +61,28 @@ impl Random {
                 let whole = low + ((u64::from(self.next()) * u64::from(high.abs_diff(low))) >> 24) as i32;
                 (whole << 16) + (((self.next() & 0xffff) >> (16 - fraction)) << (16 - fraction)) as i32
             }
+        }
+    }
+}
+
+impl Random {
+    fn net<'r>(
+        &mut self,
+        room: &'r mut [Point3; 21],
+        (triangle, degrees): (bool, (usize, usize)),
+        range: (i32, i32),
+        fraction: u32,
+    ) -> Result<SurfaceNet<'r>, core::fmt::Error> {
+        let len = if triangle { (degrees.0 + 1) * (degrees.0 + 2) / 2 } else { (degrees.0 + 1) * (degrees.1 + 1) };
+        let points = room.get_mut(..len).ok_or(core::fmt::Error)?;
+        for p in &mut *points {
+            let [x, y, z] = [(); 3].map(|()| self.coordinate(range, fraction));
+            *p = Point3::from_bits(x, y, z);
+        }
+        if triangle {
+            TriangleNet::new(degrees.0, points).map(SurfaceNet::Triangle).map_err(|_| core::fmt::Error)
+        } else {
+            TensorNet::new(degrees, points).map(SurfaceNet::Tensor).map_err(|_| core::fmt::Error)
         }
     }
 }
@@ -84,19 +122,14 @@ pub(crate) fn report(out: &mut impl core::fmt::Write) -> core::fmt::Result {
     for (triangle, degrees) in KINDS {
         for range in RANGES {
             for fraction in FRACTIONS {
-                let len =
-                    if triangle { (degrees.0 + 1) * (degrees.0 + 2) / 2 } else { (degrees.0 + 1) * (degrees.1 + 1) };
-                let points = room.get_mut(..len).ok_or(core::fmt::Error)?;
-                for p in &mut *points {
-                    let [x, y, z] = [(); 3].map(|()| random.coordinate(range, fraction));
-                    *p = Point3::from_bits(x, y, z);
-                }
-                let net = if triangle {
-                    SurfaceNet::Triangle(TriangleNet::new(degrees.0, points).map_err(|_| core::fmt::Error)?)
-                } else {
-                    SurfaceNet::Tensor(TensorNet::new(degrees, points).map_err(|_| core::fmt::Error)?)
-                };
+                let net = random.net(&mut room, (triangle, degrees), range, fraction)?;
                 lattices(out, net, random.next())?;
+            }
+        }
+        for range in PICTURES {
+            for (fraction, steps) in [(0, 16), (0, 256), (4, 64), (16, 33)] {
+                let net = random.net(&mut room, (triangle, degrees), range, fraction)?;
+                picture(out, net, steps, *TAGS.get(random.next() as usize & 3).ok_or(core::fmt::Error)?)?;
             }
         }
     }
@@ -118,6 +151,35 @@ fn lattices(out: &mut impl core::fmt::Write, net: SurfaceNet<'_>, pick: u32) -> 
         writeln!(out, "{:?} {r} x {s}: {count} points, digest {digest:08x}, sum {sum}", net.degrees())?;
     }
     Ok(())
+}
+
+/// Writes the line of a picture; an error where it is not that of the points one by one, or the forms differ on many steps.
+fn picture(out: &mut impl core::fmt::Write, net: SurfaceNet<'_>, n: u32, tags: Tags) -> core::fmt::Result {
+    let lattice = Steps::uniform(n).ok().and_then(|steps| Lattice::new(net, steps).ok()).ok_or(core::fmt::Error)?;
+    if n == 256 && net.is_triangle() && agreed(&lattice).is_none() {
+        writeln!(out, "{:?} {n} x {n}: the forms differ", net.degrees())?;
+        return Err(core::fmt::Error);
+    }
+    let mut expected = [VisibilityBuffer::EMPTY; SIDE * SIDE];
+    for p in lattice.points() {
+        if let (0..SIDE_I32, 0..SIDE_I32) = (p.x, p.y)
+            && let Some(entry) = expected.get_mut(p.y as usize * SIDE + p.x as usize)
+        {
+            *entry = (*entry).min(((p.z + (1 << 15)) as u32) << 16 | u32::from(tags.at(p.i, p.j)));
+        }
+    }
+    let mut entries = [0; SIDE * SIDE];
+    let mut picture = VisibilityBuffer::new(&mut entries, SIDE as u32, SIDE as u32).map_err(|_| core::fmt::Error)?;
+    picture.clear();
+    picture.draw(&lattice, tags);
+    // Nothing is nearer a second time.
+    picture.draw(&lattice, tags);
+    let (seen, digest) = entries.iter().fold((0, 0_u32), |(seen, digest), entry| {
+        let digest = digest.wrapping_mul(0x0100_0193).wrapping_add(*entry).rotate_left(5);
+        (seen + u32::from(*entry != VisibilityBuffer::EMPTY), digest)
+    });
+    writeln!(out, "{:?} {n} x {n}, a picture: {seen} pixels, digest {digest:08x}", net.degrees())?;
+    if entries == expected { Ok(()) } else { Err(core::fmt::Error) }
 }
 
 #[cfg(not(target_os = "none"))]

@@ -45,7 +45,7 @@
 //! | `graphics` (default) | `graphics`: drawing into `embedded-graphics-core` targets |
 //! | `styled` | `Transform` on models and curves, `into_styled` on curves; needs the full `embedded-graphics` |
 //! | `defmt` | `defmt::Format` on every public type |
-//! | `asm` | rows in assembly for ARMv6-M, ARMv7-M and RV32 where the crate sums them itself: the only `unsafe` code |
+//! | `asm` | rows in assembly, the only `unsafe` code: sums of lattices on ARMv6-M, ARMv7-M and RV32, visibility buffers on ARMv7-M, points in row order on ARMv6-M |
 //! | `std` | `reference`; the rest stays `no_std` code |
 //!
 //! # What it asks of a target

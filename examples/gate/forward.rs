@@ -2,7 +2,8 @@
 
 use super::{Digest, Sum, data, hide};
 use embedded_surfaces::forward::{
-    Accumulator, Budget, CurveLattice, CurvePoint, Lattice, LatticePoint, RowStep, Sampling, Steps, UnitStep,
+    Accumulator, Budget, CurveLattice, CurvePoint, Lattice, LatticePoint, RowStep, Sampling, Steps, Tags, UnitStep,
+    VisibilityBuffer, Visible,
 };
 use embedded_surfaces::geometry::Point3;
 use embedded_surfaces::num::I16F16;
@@ -13,6 +14,12 @@ use embedded_surfaces::patch::{
 impl Digest for LatticePoint {
     fn digest(&self, sum: &mut Sum) {
         ([self.i, self.j], [self.x, self.y, self.z]).digest(sum);
+    }
+}
+
+impl Digest for Visible {
+    fn digest(&self, sum: &mut Sum) {
+        (i32::from(self.z), u32::from(self.tag)).digest(sum);
     }
 }
 
@@ -103,6 +110,7 @@ fn lattices(sum: &mut Sum, net: SurfaceNet<'_>, steps: Steps) {
             each(sum, &lattice);
             points(sum, &lattice);
             unordered(sum, &lattice);
+            visible(sum, &lattice);
             row_steps(sum, &lattice);
         }
     }
@@ -125,6 +133,22 @@ fn each(sum: &mut Sum, lattice: &Lattice<'_>) {
 fn unordered(sum: &mut Sum, lattice: &Lattice<'_>) {
     Lattice::for_each_unordered(lattice, |point| sum.add(point));
     sum.add(Lattice::checksum(lattice));
+}
+
+/// Some points fall on the picture.
+#[inline(never)]
+fn visible(sum: &mut Sum, lattice: &Lattice<'_>) {
+    let mut entries = [0; 16 * 16];
+    for side in hide([16, 17]) {
+        let picture = VisibilityBuffer::new(&mut entries, side, 16);
+        sum.add(picture.as_ref().map(|_| ()));
+        let Ok(mut picture) = picture else { continue };
+        VisibilityBuffer::clear(&mut picture);
+        VisibilityBuffer::draw(&mut picture, lattice, Tags { by_i: 1, ..Tags::same(hide(9)) });
+        sum.add(VisibilityBuffer::get(&picture, hide(3), 4));
+        sum.add(VisibilityBuffer::entries(&picture));
+    }
+    sum.add(Tags::at(&Tags::same(hide(9)), 3, 4));
 }
 
 /// An iterator over points is some kilobytes, so each has a frame of its own.

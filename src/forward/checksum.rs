@@ -20,23 +20,32 @@ pub(super) fn checksum(form: &Form<'_>, budget: &Budget) -> i32 {
 #[cfg(any(forward_asm = "v6m", forward_asm = "rv32"))]
 mod assembly {
     use crate::forward::Budget;
-    use crate::forward::asm::class_sum;
+    use crate::forward::asm::{class_sum, walk_of};
     use crate::forward::form::Form;
-    use crate::forward::residue::Classes;
+    use crate::forward::residue::{Class, Classes};
 
     #[inline(never)]
     pub(super) fn checksum(form: &Form<'_>, budget: &Budget) -> Option<i32> {
         let classes = Classes::new(form, budget, 0)?;
-        let (mut rows, mut sum) = (classes.rows(), 0_i32);
-        while let Some(row) = rows.next_row() {
-            let place = rows.classes.place.shift();
-            if rows.classes.is_triangle() {
-                // The rows of a class lose a point each, down to one.
-                sum = sum.wrapping_add(class_sum(&mut rows.class, place, row.count, row.count));
-                rows.next_class();
-            } else {
-                let mut class = rows.class;
-                sum = sum.wrapping_add(class_sum(&mut class, place, row.count, 1));
+        let (mut sum, mut class) = (0_i32, Class::default());
+        let (count, shift) = (classes.count(), classes.place.shift());
+        for j in 0..count {
+            let Some(rows) = classes.last_row().checked_sub(j) else { break };
+            for i in 0..count {
+                let Some(columns) = classes.last_in_row(j).checked_sub(i) else { break };
+                let points = (columns >> classes.bits) + 1;
+                if classes.shrinks() {
+                    // The rows of a class lose a point each, down to one.
+                    classes.set_before(&mut class, i, j);
+                    sum = sum.wrapping_add(class_sum(&mut walk_of(&class), shift, points, points));
+                    continue;
+                }
+                classes.set(&mut class, i, j);
+                for _ in 0..=rows >> classes.bits {
+                    let alone = class.map(|[row, ..]| [row, [0; 4], [0; 4], [0; 4]]);
+                    sum = sum.wrapping_add(class_sum(&mut walk_of(&alone), shift, points, 1));
+                    classes.next_row(&mut class);
+                }
             }
         }
         Some(sum)

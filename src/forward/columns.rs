@@ -3,6 +3,8 @@
 //! A loop keeps one coordinate of one class: a value, two differences, and the last, which is read anew every fourth
 //! time so that the loop is kept as it is written.
 
+#[cfg(forward_asm = "v6m")]
+use super::asm::{PAIRS, pairs};
 use super::fill::{Lane, MULTIPLIES, as_written, lane};
 use super::lanes::LANES;
 use super::lattice::LatticePoint;
@@ -15,6 +17,8 @@ pub(super) const BUFFERED: bool = LANES == 1 && !MULTIPLIES && !cfg!(target_arch
 
 /// The most points of a run.
 pub(super) const MOST: usize = 96;
+#[cfg(forward_asm = "v6m")]
+const _: () = assert!(MOST == 2 * PAIRS);
 
 /// Room for the points of a run, x, y, z of each together.
 pub(super) struct Columns([i32; 3 * MOST + 5]);
@@ -24,6 +28,15 @@ impl Columns {
     #[inline(always)]
     fn fill<const S: usize>(&mut self, rows: &mut [[i32; 4]; S], place: Place, count: usize) {
         let fours = count.div_ceil(4);
+        #[cfg(forward_asm = "v6m")]
+        if S == 6 {
+            for (offset, rows) in [0, 3].into_iter().zip(rows.as_chunks_mut::<3>().0) {
+                if let Some(room) = self.0.get_mut(offset..).and_then(|room| room.first_chunk_mut()) {
+                    pairs(rows, room, fours, place.shift());
+                }
+            }
+            return;
+        }
         for (offset, row) in rows.iter_mut().enumerate() {
             let Some(room) = self.0.get_mut(offset..).and_then(|room| room.first_chunk_mut::<{ 3 * MOST }>()) else {
                 return;

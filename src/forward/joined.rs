@@ -39,6 +39,13 @@ impl Axis {
         (self.value >> 32) as i32
     }
 
+    #[cfg(forward_asm = "v7m")]
+    #[inline(always)]
+    fn words(&self) -> [i32; 5] {
+        let [one, two, three] = self.d;
+        [self.value as i32, self.x(), one, two, three]
+    }
+
     #[inline(always)]
     fn step(&mut self, by: i32) {
         let [one, two, three] = &mut self.d;
@@ -150,6 +157,23 @@ impl Joined {
             (self.row[0], self.row[1]) = (x, y);
         }
         count as usize
+    }
+
+    /// Gives every row to `f`: j, how many points, and of each axis the lower and the upper half of the value at its
+    /// start, and the differences.
+    #[cfg(forward_asm = "v7m")]
+    #[inline(always)]
+    pub(super) fn each_row(&mut self, mut f: impl FnMut(u32, u32, [[i32; 5]; 3])) {
+        for j in 0..=self.last_row {
+            f(j, self.last_in_row.wrapping_add(1), [self.axis(0), self.axis(1), self.axis(2)].map(|axis| axis.words()));
+            self.next_row();
+        }
+    }
+
+    /// 2^32/N.
+    #[cfg(forward_asm = "v7m")]
+    pub(super) fn by(&self) -> i32 {
+        self.by
     }
 
     /// A coordinate at the start of the row.

@@ -117,6 +117,7 @@ impl<W: Word> Accumulate<W> {
     }
 
     /// The bits below the coordinate.
+    #[cfg(forward_asm = "v7m")]
     pub(super) fn fraction_bits(&self) -> usize {
         self.shift
     }

@@ -45,8 +45,8 @@ pub enum RowStep {
 /// State of a walk, on the stack (computed; what the compiler spills comes on top): 3·(d+1)²·w/8 bytes plus
 /// 6·(d+1)·w/8, with d the larger degree rounded up to 3, 5 or 8 and w the accumulator's bits, so 0.6 KB for bicubics
 /// in `i64` and 4.8 KB at most; a third more for rational nets. The points of a run come on top: 0.6 KB on 32-bit cores,
-/// 1 KB for cubics in `i32` on ARMv7-M, 0.8 KB for the lanes of 64-bit hosts. Sub-lattices take 1 KB
-/// ([`for_each_unordered`](Self::for_each_unordered)), on ARMv6-M 2.3 KB, in row order too.
+/// 1 KB for cubics in `i32` on ARMv7-M, 0.8 KB for the lanes of 64-bit hosts. Sub-lattices take 0.6 KB
+/// ([`for_each_unordered`](Self::for_each_unordered)), on ARMv6-M 1.8 KB, in row order 2.5 KB.
 ///
 /// ```
 /// use embedded_surfaces::forward::{Lattice, Steps};
@@ -105,6 +105,12 @@ impl<'a> Lattice<'a> {
         &self.budget
     }
 
+    /// What is walked, for what walks it by itself.
+    #[cfg(forward_asm = "v7m")]
+    pub(super) fn plan(&self) -> (&Form<'a>, &Budget) {
+        (&self.form, &self.budget)
+    }
+
     /// The number of points: (n_r+1)(n_s+1), or (n+1)(n+2)/2 for a triangle.
     #[must_use]
     pub fn point_count(&self) -> u64 {
@@ -112,6 +118,9 @@ impl<'a> Lattice<'a> {
     }
 
     /// Calls `f` with every point in row order: the fast path.
+    ///
+    /// With the feature `asm` runs of points are made by assembly on ARMv6-M, where N is a power of two, the degree at most
+    /// 3 and two sub-lattices a row take 32 bits ([`for_each_unordered`](Self::for_each_unordered)).
     #[inline]
     pub fn for_each(&self, f: impl FnMut(LatticePoint)) {
         walk(&self.form, &self.budget, f);

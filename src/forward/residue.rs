@@ -14,13 +14,11 @@
 
 use super::Budget;
 use super::columns::{BUFFERED, ClassRuns, visit_runs};
-use super::engine::integer_bits;
 use super::fill::{MULTIPLIES, as_written};
 use super::form::{Form, Kind};
-use super::kernel::Accumulate;
 use super::lattice::LatticePoint;
-use super::table::{Table, double_stride, each_column, step_backward, step_r, step_s, step_triangle, to_backward};
-use super::walk::Walker;
+use super::monomial::Monomials;
+use super::table::{Table, step_backward, step_s, step_triangle};
 use crate::num::Coord;
 
 /// The largest R: 16 classes.
@@ -73,12 +71,10 @@ pub(super) fn read<const SHIFT: u32>(v: i32) -> i32 {
 /// What is the same for all classes.
 pub(super) struct Classes<'f, 'a> {
     form: &'f Form<'a>,
-    base: Walker<Accumulate<i64>, 4>,
+    powers: Monomials,
     pub(super) place: Place,
     /// R.
     pub(super) bits: u32,
-    /// What the values of `base` are shifted right by to stand at their place.
-    down: i32,
 }
 
 /// The differences of a class: `[axis][b][a]`, backward ones along the row.
@@ -99,11 +95,7 @@ impl<'f, 'a> Classes<'f, 'a> {
         if bits > MOST || steps >> bits < LEAST {
             return None;
         }
-        let kernel = Accumulate::<i64>::of(budget, integer_bits(form))?;
-        let down = kernel.fraction_bits() as i32 - place.shift() as i32;
-        let mut classes = Self { form, base: Walker::blank(kernel), place, bits, down };
-        classes.base.set_up_points(form, budget);
-        Some(classes)
+        Some(Self { form, powers: Monomials::new(form, budget, fraction), place, bits })
     }
 
     /// q.
@@ -115,20 +107,15 @@ impl<'f, 'a> Classes<'f, 'a> {
     #[inline(never)]
     pub(super) fn set(&self, class: &mut Class, i: u32, j: u32) {
         for (axis, class) in class.iter_mut().enumerate() {
-            let Some((table, _, value)) = self.base.start_of(axis) else { return };
-            let mut t = *table;
-            t[0][0] = value;
-            (0..i).for_each(|_| step_r(&mut t));
-            (0..j).for_each(|_| step_s(&mut t));
-            for _ in 0..self.bits {
-                t.iter_mut().for_each(double_stride);
-                each_column(&mut t, 3, |_, column| double_stride(column));
-            }
-            let place = |v: i64| if self.down < 0 { v << -self.down } else { v >> self.down } as i32;
-            for (entry, v) in class.as_flattened_mut().iter_mut().zip(t.as_flattened()) {
-                *entry = place(*v);
-            }
-            class.iter_mut().for_each(to_backward);
+            self.powers.class(axis, (i, j), (self.bits, self.place.shift()), class);
+        }
+    }
+
+    /// The class a row before its first one, with backward differences along columns, too.
+    #[cfg(any(forward_asm = "v6m", forward_asm = "rv32"))]
+    pub(super) fn set_before(&self, class: &mut Class, i: u32, j: u32) {
+        for (axis, class) in class.iter_mut().enumerate() {
+            self.powers.class_before(axis, (i, j), (self.bits, self.place.shift()), class);
         }
     }
 
@@ -149,7 +136,7 @@ impl<'f, 'a> Classes<'f, 'a> {
     }
 
     #[cfg(any(forward_asm = "v6m", forward_asm = "rv32"))]
-    pub(super) fn is_triangle(&self) -> bool {
+    pub(super) fn shrinks(&self) -> bool {
         self.form.kind == Kind::Triangle
     }
 
@@ -184,12 +171,6 @@ pub(super) struct ClassRows<'c, 'f, 'a> {
 }
 
 impl ClassRows<'_, '_, '_> {
-    /// Leaves the rest of the class.
-    #[cfg(any(forward_asm = "v6m", forward_asm = "rv32"))]
-    pub(super) fn next_class(&mut self) {
-        self.j = self.classes.last_row();
-    }
-
     /// Goes to the next row.
     #[inline(never)]
     pub(super) fn next_row(&mut self) -> Option<ClassRow> {
