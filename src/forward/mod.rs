@@ -45,19 +45,21 @@
 //! | | M0 | M4 | RV32 |
 //! |---|---|---|---|
 //! | row order | 34.8 | 22.9 | 24.4 |
-//! | any order | 35.0 | 22.0 | 19.8 |
+//! | any order | 29.4 | 18.4 | 19.2 |
 //! | [`Lattice::checksum`] with the feature `asm` | 18.4 | 13.5 | 17.5 |
 //!
-//! What a compiler leaves above that: on ARMv6-M a coordinate takes three additions, a shift and a store, and 1.25 more for
-//! a loop of four that reads the last difference anew; then the point is loaded and added up in 7. On M4 a sum in any order
-//! has nine additions, three shifted ones and three loads of last differences, because nine values and the sum leave no
-//! register for them, and the change of a row of 65 points takes 112.
+//! What a compiler leaves above that, in any order: on ARMv6-M a coordinate takes three additions, a shift and a store, and
+//! 0.7 more for a loop of eight that reads the last difference anew, of which the last ones of a row are not all wanted;
+//! then the point is loaded and added up in 7, and the change of a row of 65 points takes 220. On M4 a sum has nine
+//! additions, three shifted ones and two loads of last differences, because nine values, one difference and the sum leave
+//! no register for them, and the change of a row takes 110.
 
 #[cfg(forward_asm)]
 mod asm;
 mod bounds;
 mod budget;
 mod checksum;
+mod class_runs;
 mod columns;
 mod curve;
 mod engine;
