@@ -1,4 +1,4 @@
-//! Sub-lattices on cores with few registers: runs of points, made one coordinate after the other.
+//! Sub-lattices on cores with few registers, in row order: runs of points, made one coordinate after the other.
 //!
 //! A loop keeps one coordinate of one class: a value, two differences, and the last, which is read anew every fourth
 //! time so that the loop is kept as it is written.
@@ -8,7 +8,7 @@ use super::asm::{PAIRS, pairs};
 use super::fill::{Lane, MULTIPLIES, as_written, lane};
 use super::lanes::LANES;
 use super::lattice::LatticePoint;
-use super::residue::{Class, ClassRows, Classes, Place, read};
+use super::residue::{Class, Classes, Place, read};
 use super::run::Run;
 
 /// Whether sub-lattices are made by runs: on 32-bit cores with neither registers for three coordinates at a time nor a
@@ -51,15 +51,9 @@ impl Columns {
     }
 }
 
-/// A walk that goes on by runs.
-pub(super) trait ColumnRuns {
-    /// Makes the next run; `None` at the end.
-    fn next_run(&mut self, columns: &mut Columns) -> Option<Run>;
-}
-
 /// Gives all points of a walk to `f`.
 #[inline(always)]
-pub(super) fn visit_runs(walk: &mut impl ColumnRuns, mut f: impl FnMut(LatticePoint)) {
+pub(super) fn visit_runs(walk: &mut Paired<'_, '_>, mut f: impl FnMut(LatticePoint)) {
     let mut columns = Columns([0; 3 * MOST + 5]);
     while let Some(run) = walk.next_run(&mut columns) {
         // Seen as a reference, it is walked by one register.
@@ -69,42 +63,6 @@ pub(super) fn visit_runs(walk: &mut impl ColumnRuns, mut f: impl FnMut(LatticePo
             as_written();
             i + run.stride
         });
-    }
-}
-
-/// The walk class by class.
-pub(super) struct ClassRuns<'r, 'c, 'f, 'a> {
-    rows: &'r mut ClassRows<'c, 'f, 'a>,
-    /// `[axis]`, where the next run starts.
-    row: [[i32; 4]; 3],
-    i: u32,
-    j: u32,
-    left: u32,
-}
-
-impl<'r, 'c, 'f, 'a> ClassRuns<'r, 'c, 'f, 'a> {
-    #[inline(always)]
-    pub(super) fn new(rows: &'r mut ClassRows<'c, 'f, 'a>) -> Self {
-        Self { rows, row: [[0; 4]; 3], i: 0, j: 0, left: 0 }
-    }
-}
-
-impl ColumnRuns for ClassRuns<'_, '_, '_, '_> {
-    #[inline(never)]
-    fn next_run(&mut self, columns: &mut Columns) -> Option<Run> {
-        if self.left == 0 {
-            let next = self.rows.next_row()?;
-            (self.i, self.j, self.left) = (next.i, next.j, next.count);
-            for (row, table) in self.row.iter_mut().zip(&self.rows.class) {
-                *row = table[0];
-            }
-        }
-        let (count, stride) = (self.left.min(MOST as u32), self.rows.classes.count());
-        columns.fill(&mut self.row, self.rows.classes.place, count as usize);
-        let run = Run { i: self.i, j: self.j, stride, count: count as usize };
-        self.left -= count;
-        self.i += count << self.rows.classes.bits;
-        Some(run)
     }
 }
 
@@ -145,9 +103,8 @@ impl<'f, 'a> Paired<'f, 'a> {
             self.classes.next_row(class);
         }
     }
-}
 
-impl ColumnRuns for Paired<'_, '_> {
+    /// Makes the next run; `None` at the end.
     #[inline(never)]
     fn next_run(&mut self, columns: &mut Columns) -> Option<Run> {
         let (i, j) = self.position;
@@ -168,6 +125,7 @@ impl ColumnRuns for Paired<'_, '_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::forward::class_runs as runs;
     use crate::forward::form::Form;
     use crate::forward::{Lattice, Steps};
     use crate::geometry::Point3;
@@ -188,8 +146,12 @@ mod tests {
         });
         let classes = Classes::new(&form, lattice.budget(), 0);
         let by_class = classes.map(|classes| {
-            let mut seen = Vec::new();
-            visit_runs(&mut ClassRuns::new(&mut classes.rows()), |p| seen.push(p));
+            let (mut seen, rows) = (Vec::new(), &mut classes.rows());
+            match classes.place {
+                Place::Small => runs::visit::<23>(rows, |p| seen.push(p)),
+                Place::Screen => runs::visit::<22>(rows, |p| seen.push(p)),
+                Place::Large => runs::visit::<16>(rows, |p| seen.push(p)),
+            }
             let key = |p: &LatticePoint| (p.j, p.i);
             seen.sort_by_key(key);
             one_by_one.sort_by_key(key);

@@ -211,9 +211,10 @@ pub(super) fn walk(form: &Form<'_>, budget: &Budget, f: impl FnMut(LatticePoint)
 
 /// Walks a checked form in any order.
 #[inline]
-pub(super) fn walk_unordered(form: &Form<'_>, budget: &Budget, f: impl FnMut(LatticePoint)) {
+#[allow(clippy::redundant_closure, reason = "as `f` or `&mut f`, what `f` captures is stored at every point: measured")]
+pub(super) fn walk_unordered(form: &Form<'_>, budget: &Budget, mut f: impl FnMut(LatticePoint)) {
     match Classes::new(form, budget, 0) {
-        Some(classes) => residue::visit(&classes, f),
+        Some(classes) => residue::visit(&classes, |p| f(p)),
         None => walk(form, budget, f),
     }
 }

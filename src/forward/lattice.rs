@@ -45,8 +45,8 @@ pub enum RowStep {
 /// State of a walk, on the stack (computed; what the compiler spills comes on top): 3·(d+1)²·w/8 bytes plus
 /// 6·(d+1)·w/8, with d the larger degree rounded up to 3, 5 or 8 and w the accumulator's bits, so 0.6 KB for bicubics
 /// in `i64` and 4.8 KB at most; a third more for rational nets. The points of a run come on top: 0.6 KB on 32-bit cores,
-/// 1 KB for cubics in `i32` on ARMv7-M, 0.8 KB for the lanes of 64-bit hosts. Sub-lattices take 0.6 KB
-/// ([`for_each_unordered`](Self::for_each_unordered)), on ARMv6-M 1.8 KB, in row order 2.5 KB.
+/// 1 KB for cubics in `i32` on ARMv7-M, 0.8 KB for the lanes of 64-bit hosts. Sub-lattices take 1 KB
+/// ([`for_each_unordered`](Self::for_each_unordered)), on ARMv6-M 3 KB, in row order 2.5 KB.
 ///
 /// ```
 /// use embedded_surfaces::forward::{Lattice, Steps};

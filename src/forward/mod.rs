@@ -47,22 +47,24 @@
 //! | | M0 | M4 | RV32 |
 //! |---|---|---|---|
 //! | row order | 34.0 | 22.9 | 24.4 |
-//! | any order | 34.2 | 22.0 | 19.2 |
-//! | nearest of each pixel ([`VisibilityBuffer::draw`]) | 55.3 | 35.8 | 35.4 |
+//! | any order | 28.6 | 18.0 | 18.5 |
+//! | nearest of each pixel ([`VisibilityBuffer::draw`]) | 50.7 | 35.8 | 34.7 |
 //! | row order with the feature `asm` | 29.1 | 22.9 | 24.4 |
 //! | [`Lattice::checksum`] with it | 16.7 | 13.5 | 16.3 |
-//! | nearest of each pixel with it | 55.3 | 21.1 | 35.4 |
+//! | nearest of each pixel with it | 50.7 | 21.1 | 34.7 |
 //!
-//! What a compiler leaves above that: on ARMv6-M a coordinate takes three additions, a shift and a store, and 1.25 more for
-//! a loop of four that reads the last difference anew; then the point is loaded and added up in 7. On M4 a sum in any order
-//! has nine additions, three shifted ones and three loads of last differences, because nine values and the sum leave no
-//! register for them, and the change of a row of 65 points takes 112.
+//! What a compiler leaves above that, in any order: on ARMv6-M a coordinate takes three additions, a shift and a store, and
+//! 0.7 more for a loop of eight that reads the last difference anew, of which the last ones of a row are not all wanted;
+//! then the point is loaded and added up in 7, and the change of a row of 65 points takes 220. On M4 a sum has nine
+//! additions, three shifted ones and two loads of last differences, because nine values, one difference and the sum leave
+//! no register for them, and the change of a row takes 110.
 
 #[cfg(forward_asm)]
 mod asm;
 mod bounds;
 mod budget;
 mod checksum;
+mod class_runs;
 mod columns;
 mod curve;
 mod engine;

@@ -13,13 +13,15 @@
 //! own: R is at most [`MOST`].
 
 use super::Budget;
-use super::columns::{BUFFERED, ClassRuns, visit_runs};
+use super::class_runs;
+use super::columns::BUFFERED;
 use super::fill::{MULTIPLIES, as_written};
 use super::form::{Form, Kind};
 use super::lattice::LatticePoint;
 use super::monomial::Monomials;
-use super::table::{Table, step_backward, step_s, step_triangle};
+use super::table::{Table, step_back, step_backward, step_s, step_triangle};
 use crate::num::Coord;
+use core::cell::Cell;
 
 /// The largest R: 16 classes.
 const MOST: u32 = 2;
@@ -27,6 +29,9 @@ const MOST: u32 = 2;
 /// Rows of a class have at least so many points on average of a tensor patch, or the tables of classes cost more than
 /// they gain.
 const LEAST: u32 = 16;
+
+/// Whether rows begin a step before their first point: their loop steps before it reads.
+const BEGINS_BEFORE: bool = MULTIPLIES;
 
 /// Where coordinates stand in 32 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -132,7 +137,9 @@ impl<'f, 'a> Classes<'f, 'a> {
     /// The rows of all classes.
     #[inline(always)]
     pub(super) fn rows(&self) -> ClassRows<'_, 'f, 'a> {
-        ClassRows { classes: self, class: Class::default(), next: 0, first: (0, 0), j: self.last_row() }
+        let row = ClassRow { i: 0, j: 0, count: 0 };
+        let shrinks = self.form.kind == Kind::Triangle;
+        ClassRows { classes: self, class: Class::default(), next: 0, row, left: 0, stride: self.count(), shrinks }
     }
 
     #[cfg(any(forward_asm = "v6m", forward_asm = "rv32"))]
@@ -161,38 +168,64 @@ pub(super) struct ClassRow {
 /// A walk over the rows of all classes, one class after the other.
 pub(super) struct ClassRows<'c, 'f, 'a> {
     pub(super) classes: &'c Classes<'f, 'a>,
-    /// The differences at the start of the row.
+    /// The differences at the start of the row; a step before it where the walk [`BEGINS_BEFORE`].
     pub(super) class: Class,
     /// The class after this one.
     next: u32,
-    /// The first point of the class.
-    first: (u32, u32),
-    j: u32,
+    /// The row that is there.
+    pub(super) row: ClassRow,
+    /// The rows of the class after it.
+    left: u32,
+    stride: u32,
+    shrinks: bool,
 }
 
 impl ClassRows<'_, '_, '_> {
     /// Goes to the next row.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn next_row(&mut self) -> Option<ClassRow> {
-        let (stride, last_row) = (self.classes.count(), self.classes.last_row());
-        loop {
-            self.j += stride;
-            if self.j <= last_row {
-                self.classes.next_row(&mut self.class);
-            } else {
-                if self.next >> (2 * self.classes.bits) != 0 {
-                    return None;
+        self.advance().then_some(self.row)
+    }
+
+    /// Goes to the next row, if there is one.
+    #[inline(never)]
+    pub(super) fn advance(&mut self) -> bool {
+        if self.left == 0 {
+            return self.start_class();
+        }
+        self.left -= 1;
+        self.row.j += self.stride;
+        if self.shrinks {
+            // A row of a triangle's class has one point less than the one before it, for q divides the steps.
+            self.row.count -= 1;
+            self.class.iter_mut().for_each(step_triangle);
+        } else {
+            self.class.iter_mut().for_each(step_s);
+        }
+        true
+    }
+
+    /// Goes to the first row of the next class, if there is one.
+    #[inline(never)]
+    fn start_class(&mut self) -> bool {
+        let Classes { bits, .. } = *self.classes;
+        while self.next >> (2 * bits) == 0 {
+            let (i, j) = (self.next & (self.stride - 1), self.next >> bits);
+            self.next += 1;
+            // The classes of a small lattice may have no point.
+            let (last_in_row, last_row) = (self.classes.last_in_row(j), self.classes.last_row());
+            if let (Some(columns), Some(rows)) = (last_in_row.checked_sub(i), last_row.checked_sub(j)) {
+                let (columns, rows) = (columns >> bits, rows >> bits);
+                self.row = ClassRow { i, j, count: columns + 1 };
+                self.left = if self.shrinks { columns } else { rows };
+                self.classes.set(&mut self.class, i, j);
+                if BEGINS_BEFORE {
+                    self.class.as_flattened_mut().iter_mut().for_each(step_back);
                 }
-                self.first = (self.next & (stride - 1), self.next >> self.classes.bits);
-                self.next += 1;
-                self.j = self.first.1;
-                self.classes.set(&mut self.class, self.first.0, self.first.1);
-            }
-            // The last rows of a triangle may have no point of the class.
-            if let Some(rest) = self.classes.last_in_row(self.j).checked_sub(self.first.0) {
-                return Some(ClassRow { i: self.first.0, j: self.j, count: (rest >> self.classes.bits) + 1 });
+                return true;
             }
         }
+        false
     }
 }
 
@@ -200,9 +233,6 @@ impl ClassRows<'_, '_, '_> {
 #[inline(always)]
 pub(super) fn visit(classes: &Classes<'_, '_>, f: impl FnMut(LatticePoint)) {
     let rows = &mut classes.rows();
-    if BUFFERED {
-        return visit_runs(&mut ClassRuns::new(rows), f);
-    }
     match classes.place {
         Place::Small => visit_rows::<23>(rows, f),
         Place::Screen => visit_rows::<22>(rows, f),
@@ -212,9 +242,12 @@ pub(super) fn visit(classes: &Classes<'_, '_>, f: impl FnMut(LatticePoint)) {
 
 #[inline(always)]
 fn visit_rows<const SHIFT: u32>(rows: &mut ClassRows<'_, '_, '_>, mut f: impl FnMut(LatticePoint)) {
+    if BUFFERED {
+        return class_runs::visit::<SHIFT>(rows, f);
+    }
     let stride = rows.classes.count();
     while let Some(row) = rows.next_row() {
-        if MULTIPLIES {
+        if BEGINS_BEFORE {
             visit_row_by_axes::<SHIFT>(&rows.class, row, stride, &mut f);
         } else {
             visit_row::<SHIFT>(&rows.class, row, stride, &mut f);
@@ -222,28 +255,31 @@ fn visit_rows<const SHIFT: u32>(rows: &mut ClassRows<'_, '_, '_>, mut f: impl Fn
     }
 }
 
-/// A loop that reads the last difference of each coordinate anew, and steps one after the other: then nine values and what
-/// `f` holds stay in the 12 registers that there are.
+/// A loop that reads the last differences of x and y anew: then nine values, one such difference and what `f` holds stay in
+/// the 12 registers that there are. It steps before it reads, so that the optimiser adds coordinates to a sum of `f` one
+/// after the other, with the shift in the addition.
 #[inline(always)]
 fn visit_row_by_axes<const SHIFT: u32>(class: &Class, row: ClassRow, stride: u32, f: &mut impl FnMut(LatticePoint)) {
-    let [mut x, mut y, mut z] = class.each_ref().map(|table| table[0]);
-    let last = [x[3], y[3], z[3]];
-    let [last_x, last_y, last_z] = core::hint::black_box(&last);
-    let go = |v: &mut [i32; 4], last: &i32| {
-        v[3] = *last;
-        step_backward(v);
+    let [x, y, z] = class.each_ref().map(|table| table[0]);
+    // Cells that something else might see are read where they are, on the stack, which takes no register for an address.
+    let last = [x, y].map(|row| Cell::new(row[3]));
+    core::hint::black_box(&last);
+    let [last_x, last_y] = &last;
+    let go = |mut v: [i32; 4]| {
+        step_backward(&mut v);
         as_written();
+        v
     };
-    let mut i = row.i;
-    for _ in 0..row.count {
+    (0..row.count).fold((row.i, x, y, z), |(i, mut x, mut y, z), _| {
+        x[3] = last_x.get();
+        let (x, z) = (go(x), go(z));
+        y[3] = last_y.get();
+        let y = go(y);
         let [x_here, y_here, z_here] = [x[0], y[0], z[0]].map(read::<SHIFT>);
         f(LatticePoint { i, j: row.j, x: x_here, y: y_here, z: z_here });
         as_written();
-        i += stride;
-        go(&mut x, last_x);
-        go(&mut y, last_y);
-        go(&mut z, last_z);
-    }
+        (i + stride, x, y, z)
+    });
 }
 
 /// A loop for cores that have registers for all.

@@ -109,6 +109,14 @@ pub(super) fn step_backward<W: Word, const R: usize>(d: &mut [W; R]) {
     }
 }
 
+/// Undoes [`step_backward`].
+#[inline(always)]
+pub(super) fn step_back<W: Word, const R: usize>(d: &mut [W; R]) {
+    for a in 0..R - 1 {
+        d[a] = d[a].wrapping_minus(d[a + 1]);
+    }
+}
+
 /// Differences over steps of two instead of one, in both directions: sample at 0, 2, 4, … and difference anew.
 #[inline(never)]
 pub(crate) fn double_steps<W: Word, const R: usize>(t: &mut Table<W, R>) {
