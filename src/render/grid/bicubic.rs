@@ -42,15 +42,21 @@ impl<'a> Bicubic<'a> {
         cubic::suits::<S>(net)
     }
 
-    /// The grid of a net that [`suits`](Self::suits).
-    pub(super) fn new(net: SurfaceNet<'a>, (r, s): (u32, u32)) -> Self {
+    /// The grid of a net that [`suits`](Self::suits), to be [set up](Self::set_up) where it stays.
+    #[inline(always)]
+    pub(super) fn blank(net: SurfaceNet<'a>, (r, s): (u32, u32)) -> Self {
         let is_turned = s > r;
-        let steepest = match net.points().first_chunk::<16>() {
+        Self { corners: Corners::blank(net, (r, s), is_turned), net, counts: (r.max(s), r.min(s)), is_turned }
+    }
+
+    /// Finds the coefficients.
+    #[inline(never)]
+    pub(super) fn set_up(&mut self) {
+        let net = self.net;
+        self.corners.set_up(|| match net.points().first_chunk::<16>() {
             Some(points) if net.degrees() == (3, 3) => steepest(points),
             _ => PieceSlopes::of(net).steepest(net),
-        };
-        let corners = Corners::new(net, (r, s), is_turned, steepest);
-        Self { corners, net, counts: (r.max(s), r.min(s)), is_turned }
+        });
     }
 
     pub(super) fn form(&self) -> Form<'a> {
@@ -125,6 +131,7 @@ struct TwoRows<'c, 'a> {
 }
 
 impl Normals for TwoRows<'_, '_> {
+    #[inline(always)]
     fn normal(&self, i: u32, j: u32) -> Option<[i32; 3]> {
         self.corners.normal(&self.tangents[(j & 1) as usize], i, j)
     }

@@ -13,13 +13,29 @@ pub(in crate::render) struct Lighting<'a> {
     pub(super) light: &'a Light,
     pub(super) style: Style,
     pub(super) form: &'a Form<'a>,
+    pub(super) side: Side,
 }
 
 impl Lighting<'_> {
-    /// The level of the side that the light reaches, and which one it is.
-    #[inline(never)]
-    fn shade(&self, vertex: &mut Vertex, normal: Option<[i32; 3]>) {
+    /// Whether vertices keep which side is lit until a facet asks: where both sides are drawn, or there is a highlight.
+    #[inline(always)]
+    fn keeps_sides(&self) -> bool {
+        self.side == Side::Both || matches!(self.style, Style::Glossy(_))
+    }
+
+    /// The level of the side that is drawn; of both, that of the one that the light reaches, and which one it is.
+    #[inline(always)]
+    pub(super) fn shade(&self, vertex: &mut Vertex, normal: Option<[i32; 3]>) {
         let normal = normal.unwrap_or([0, 0, -1]);
+        if self.keeps_sides() {
+            return self.shade_in_full(vertex, normal);
+        }
+        vertex.level = self.light.level_of_turned(normal, self.side == Side::Against);
+        vertex.lit = Lit::Both;
+    }
+
+    #[inline(never)]
+    fn shade_in_full(&self, vertex: &mut Vertex, normal: [i32; 3]) {
         let (level, along) = self.light.level_of_lit_side(normal);
         vertex.level = match self.style {
             Style::Glossy(gloss) => self.light.glossy(if along { normal } else { normal.map(|n| -n) }, gloss),
@@ -46,6 +62,17 @@ impl Side {
         }
     }
 
+    /// What is to be turned in areas and what is to be added so that a cell of areas that are not negative then is hidden;
+    /// where areas are zero, others may be as well.
+    #[inline(always)]
+    fn masks(self) -> [i32; 2] {
+        match self {
+            Self::Both => [0, -1],
+            Self::Along => [0, 0],
+            Self::Against => [-1, 0],
+        }
+    }
+
     /// Whether both triangles of a cell of these areas are hidden.
     #[inline(always)]
     fn hides(self, [abc, acd]: [i32; 2]) -> bool {
@@ -67,14 +94,12 @@ impl Side {
 
 /// Makes facets of the cells between two rows.
 pub(super) struct Cells<'a> {
-    pub(super) patch: usize,
+    /// The facet that is made, of this patch.
+    pub(super) quad: Quad,
     pub(super) lighting: Lighting<'a>,
-    pub(super) side: Side,
     pub(super) output: &'a mut dyn Output,
     /// The output's.
     pub(super) window: [i32; 4],
-    /// Whether the patch may leave its columns.
-    pub(super) is_wide: bool,
     /// The first column of the strip.
     pub(super) first: u32,
     pub(super) facets: u32,
@@ -111,15 +136,15 @@ impl Cells<'_> {
     fn shade(&self, vertex: &mut Vertex, corner: usize, normals: &dyn Normals, at: [u32; 2]) {
         if vertex.lit == Lit::Unknown {
             let (i, j) = (at[0] + u32::from(corner == 1 || corner == 2), at[1] - u32::from(corner < 2));
-            self.lighting.shade(vertex, normals.normal(i, j));
+            normals.shade(&self.lighting, vertex, [i, j]);
         }
     }
 
     /// Gives corners that look away from the light its level.
     #[inline(always)]
-    fn darken(&self, corners: &mut [Vertex; 4], along: bool) {
+    fn darken(&mut self, along: bool) {
         let dark = if along { Lit::Against } else { Lit::Along };
-        for corner in corners {
+        for corner in &mut self.quad.corners {
             if corner.lit == dark {
                 corner.level = self.lighting.light.ambient();
             }
@@ -135,8 +160,9 @@ impl Cells<'_> {
         let [x_from, x_to, y_from, y_to] = self.window;
         let rows_of_cell = rows([a.y, b.y, c.y, d.y]);
         if (abc | acd | abd) == 0
+            || self.lighting.side.hides([abc, acd])
             || !meet(rows_of_cell, y_from, y_to)
-            || (self.is_wide && !meet(rows([a.x, b.x, c.x, d.x]), x_from, x_to))
+            || (self.quad.is_wide && !meet(rows([a.x, b.x, c.x, d.x]), x_from, x_to))
         {
             return;
         }
@@ -156,11 +182,20 @@ impl Cells<'_> {
         // Clockwise on the screen: the other way round where S_r × S_s looks at the viewer.
         let along = (abc | acd) < 0;
         let (second, fourth) = if along { (d, b) } else { (b, d) };
-        let mut quad =
-            Quad { corners: [*a, *second, *c, *fourth], rows: rows_of_cell, patch: self.patch, is_wide: self.is_wide };
-        self.darken(&mut quad.corners, along);
+        let quad = &mut self.quad;
+        (quad.corners[0], quad.corners[1], quad.corners[2], quad.corners[3]) = (*a, *second, *c, *fourth);
+        quad.rows = rows_of_cell;
+        self.put(along);
+    }
+
+    /// Sends the facet that was made to the output.
+    #[inline(always)]
+    fn put(&mut self, along: bool) {
+        if self.lighting.keeps_sides() {
+            self.darken(along);
+        }
         self.facets += 1;
-        self.output.facet(&quad);
+        self.output.facet(&self.quad);
     }
 
     /// A cell that is not convex, cut along one of its diagonals.
@@ -180,21 +215,21 @@ impl Cells<'_> {
     /// A triangle of three corners, its last one twice.
     #[inline(never)]
     fn triangle(&mut self, cell: &mut Cell<'_>, along: bool, corners: [usize; 3]) {
-        if !self.side.shows(along) {
+        if !self.lighting.side.shows(along) {
             return;
         }
         for corner in corners {
             self.shade(cell.corners[corner & 3], corner, cell.normals, cell.at);
         }
         let [a, b, c] = corners.map(|corner| *cell.corners[corner & 3]);
-        let mut corners = if along { [a, c, b, b] } else { [a, b, c, c] };
-        self.darken(&mut corners, along);
-        self.facets += 1;
-        self.output.facet(&Quad::new(corners, self.patch, self.is_wide));
+        let corners = if along { [a, c, b, b] } else { [a, b, c, c] };
+        self.quad = Quad::new(corners, self.quad.patch, self.quad.is_wide);
+        self.put(along);
     }
 }
 
 impl RowSink for Cells<'_> {
+    #[inline(never)]
     fn row(&mut self, rows: &mut Rows, normals: &dyn Normals, j: u32, count: usize) {
         if j == 0 {
             return;
@@ -203,12 +238,13 @@ impl RowSink for Cells<'_> {
         let (above, below) = if j & 1 == 1 { (even, odd) } else { (odd, even) };
         let ends = above.iter().zip(below.iter()).next();
         let Some((mut a, mut d)) = ends.map(|(a, d)| ([a.x, a.y], [d.x, d.y])) else { return };
+        let [turn, keep] = self.lighting.side.masks();
         for k in 0..count.saturating_sub(1).min(super::SEGMENTS) {
             let (b, c) = (above[k + 1].place(), below[k + 1].place());
             // All products are exact: corners are less than 2^15 apart.
             let ac = minus(c, a);
             let areas = [cross(minus(b, a), ac), cross(ac, minus(d, a))];
-            if !self.side.hides(areas) {
+            if ((areas[0] ^ turn) | (areas[1] ^ turn) | keep) < 0 {
                 self.seen(above, below, (normals, j, k), areas);
             }
             (a, d) = (b, c);
@@ -240,9 +276,7 @@ impl Cells<'_> {
             let mut c = *d;
             let ac = minus(c.place(), a.place());
             let areas = [cross(minus(b.place(), a.place()), ac), 0];
-            if !self.side.hides(areas) {
-                self.cell(Cell { corners: [a, b, &mut c, d], normals, at: [self.first + k as u32, j] }, areas, true);
-            }
+            self.cell(Cell { corners: [a, b, &mut c, d], normals, at: [self.first + k as u32, j] }, areas, true);
         }
     }
 }

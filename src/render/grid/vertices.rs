@@ -4,6 +4,7 @@ use super::super::depth::DepthWindow;
 use super::super::light::{normal_of, short};
 use super::super::pen::tangents_inside;
 use super::super::style::Style;
+use super::cells::Lighting;
 use super::level_of;
 use crate::forward::{Form, Fraction, Site, Visit};
 use crate::patch::SurfaceNet;
@@ -15,14 +16,14 @@ pub(super) const SEGMENTS: usize = 32;
 pub(super) type Row = [Vertex; SEGMENTS + 1];
 
 /// Rows j − 1 and j: row j stands at j mod 2.
-pub(super) type Rows = TwoRows;
+pub(in crate::render) type Rows = TwoRows;
 
 /// Two rows of vertices.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct TwoRows(pub(super) [Row; 2]);
+pub(in crate::render) struct TwoRows(pub(super) [Row; 2]);
 
 impl TwoRows {
-    pub(super) fn new() -> Self {
+    pub(in crate::render) fn new() -> Self {
         Self([[Vertex::NONE; SEGMENTS + 1]; 2])
     }
 }
@@ -54,7 +55,7 @@ pub(super) struct Vertex {
 }
 
 impl Vertex {
-    const NONE: Self = Self { x: 0, y: 0, depth: 0, level: 0, lit: Lit::Unknown };
+    pub(super) const NONE: Self = Self { x: 0, y: 0, depth: 0, level: 0, lit: Lit::Unknown };
 
     #[inline(always)]
     pub(super) fn place(&self) -> [i32; 2] {
@@ -74,6 +75,12 @@ pub(super) fn with_room(depth: u16) -> u16 {
 pub(super) trait Normals {
     /// The normal S_r × S_s at column `i` of row `j`, of components of at most 2^15; `None` where it is not known.
     fn normal(&self, i: u32, j: u32) -> Option<[i32; 3]>;
+
+    /// Finds the level of the vertex at this column and row.
+    #[inline(never)]
+    fn shade(&self, lighting: &Lighting<'_>, vertex: &mut Vertex, [i, j]: [u32; 2]) {
+        lighting.shade(vertex, self.normal(i, j));
+    }
 }
 
 /// What is done with a row of vertices and the one before it.
