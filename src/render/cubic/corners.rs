@@ -122,7 +122,9 @@ impl<'n> Corners<'n> {
             if (i == 0 || i == along.steps) && (row.j == 0 || row.j == across.steps) {
                 set(out, self.tip([i, row.j]));
             } else {
-                let exact = |axis: usize| self.exact(axis, [i, row.j], at(&cubics[axis], t));
+                // All values before one is settled: products of 64 bits with a number that is kept as one are dearer.
+                let values = [at(&cubics[0], t), at(&cubics[1], t), at(&cubics[2], t)];
+                let exact = |axis: usize| self.exact(axis, [i, row.j], values[axis]);
                 set(out, [exact(0), exact(1), exact(2)]);
             }
         }
