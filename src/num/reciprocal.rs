@@ -113,19 +113,44 @@ pub(crate) fn high(a: i32, b: i32) -> i32 {
 /// A cubic c0 + c1·t + c2·t² + c3·t³, given as c0, 2·c1, 4·c2, 8·c3, at a parameter in 2^-31: rounded down three times.
 #[inline(always)]
 pub(crate) fn cubic_at(c: &[i32; 4], t: i32) -> i32 {
-    if HAS_DIVIDER {
-        c[0].wrapping_add(high(c[1].wrapping_add(high(c[2].wrapping_add(high(c[3], t)), t)), t))
-    } else {
-        cubic_in_halves(c, t)
-    }
+    if HAS_DIVIDER { At::new(t).cubic(c) } else { cubic_in_halves(c, t) }
 }
 
 #[inline(never)]
-fn cubic_in_halves([a, b, c, d]: &[i32; 4], t: i32) -> i32 {
-    let t = split(t);
-    let value = c.wrapping_add(halves(*d, t));
-    let value = b.wrapping_add(halves(value, t));
-    a.wrapping_add(halves(value, t))
+fn cubic_in_halves(c: &[i32; 4], t: i32) -> i32 {
+    At { whole: t, halves: split(t) }.cubic_in_halves(c)
+}
+
+/// A parameter in 2^-31 for many cubics.
+#[derive(Clone, Copy)]
+pub(crate) struct At {
+    whole: i32,
+    /// Where products are made of those of halves.
+    halves: [i32; 2],
+}
+
+impl At {
+    #[inline(always)]
+    pub(crate) fn new(t: i32) -> Self {
+        Self { whole: t, halves: if HAS_DIVIDER { [0; 2] } else { split(t) } }
+    }
+
+    /// [`cubic_at`].
+    #[inline(always)]
+    pub(crate) fn cubic(self, c: &[i32; 4]) -> i32 {
+        if !HAS_DIVIDER {
+            return self.cubic_in_halves(c);
+        }
+        let t = self.whole;
+        c[0].wrapping_add(high(c[1].wrapping_add(high(c[2].wrapping_add(high(c[3], t)), t)), t))
+    }
+
+    #[inline(always)]
+    fn cubic_in_halves(self, [a, b, c, d]: &[i32; 4]) -> i32 {
+        let value = c.wrapping_add(halves(*d, self.halves));
+        let value = b.wrapping_add(halves(value, self.halves));
+        a.wrapping_add(halves(value, self.halves))
+    }
 }
 
 #[inline(never)]

@@ -44,7 +44,7 @@ use super::light::Side;
 use super::pen::{Ink, Stain};
 use super::tile::Area;
 use crate::geometry::Point3;
-use crate::num::{cubic_at, high, leading_zeros};
+use crate::num::{At, cubic_at, high, leading_zeros};
 use crate::patch::{Surface, SurfaceNet};
 pub(super) use corners::Corners;
 use row::{Row, Units};
@@ -318,7 +318,8 @@ impl<'n> Piece<'n> {
     #[inline(never)]
     fn row(&self, axis: usize, s: i32) -> RowCubic {
         // Not by an index: out of line it would be checked.
-        self.rows.get(axis).map_or([0; 4], |[a, b, c, d]| [at(a, s), at(b, s), at(c, s), at(d, s)])
+        let at = At::new(s);
+        self.rows.get(axis).map_or([0; 4], |cubics| cubics.each_ref().map(|cubic| at.cubic(cubic)))
     }
 
     /// The walks along a row from parameter `t` on, of what pixels are made from: x and y plus [`DOUBT`], and z.
