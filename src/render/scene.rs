@@ -270,7 +270,7 @@ impl<'a, S: Surface> Scene<'a, S> {
             {
                 statistics.patches += 1;
                 let looks = (&self.light, self.style, self.window);
-                statistics += grid::facets::<S>(&patch, looks, is_beside, output, &mut rows);
+                statistics += grid::facets::<S>(&patch, looks, [is_beside, is_above], output, &mut rows);
             }
         }
         statistics

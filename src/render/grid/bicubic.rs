@@ -91,7 +91,7 @@ impl<'a> Bicubic<'a> {
             if level.is_none() { with_room(depth) } else { depth }
         };
         let set = |vertex: &mut Vertex, [x, y, z]: [i32; 3]| {
-            (vertex.x, vertex.y, vertex.depth, vertex.lit) = (x, y, depth(z), Lit::Unknown);
+            (vertex.x, vertex.y, vertex.depth) = (x, y, depth(z));
         };
         for j in 0..=self.counts.1 {
             let Some(out) = rows.0[(j & 1) as usize].get_mut(..count.min(SEGMENTS + 1)) else { return };
@@ -99,8 +99,8 @@ impl<'a> Bicubic<'a> {
             if self.corners.is_exact(&row) {
                 self.corners.exact_row(&row, first, out, set);
             } else {
-                self.corners.each(&row, 0, first, out, |vertex, x| (vertex.x, vertex.lit) = (x, Lit::Unknown));
-                self.corners.each(&row, 1, first, out, |vertex, y| vertex.y = y);
+                self.corners.each(&row, 0, first, out, |vertex: &mut Vertex, x| vertex.x = x);
+                self.corners.each(&row, 1, first, out, |vertex: &mut Vertex, y| vertex.y = y);
                 self.corners.each(&row, 2, first, out, |vertex: &mut Vertex, z| vertex.depth = depth(z));
                 if let (Some(at), Some(vertex)) = (self.corners.end(&row, first), out.first_mut()) {
                     set(vertex, at);

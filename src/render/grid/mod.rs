@@ -74,14 +74,15 @@ pub(super) struct Patch<'a> {
     pub(super) inward: Option<bool>,
 }
 
-/// Sends the facets of a patch that meet the output's window to it; `is_beside`: it may leave the window's columns.
+/// Sends the facets of a patch that meet the output's window to it; it may leave the window's columns if
+/// `is_beside`, and its rows if `is_above`.
 ///
 /// Stack: 0.4 KB, `rows` of 0.8 KB with two rows of 33 vertices, and 0.9 KB for the walk over a bicubic patch, or 1.1 KB
 /// and what the point engine takes.
 pub(super) fn facets<S: Surface>(
     patch: &Patch<'_>,
     looks: (&Light, Style, DepthWindow),
-    is_beside: bool,
+    [is_beside, is_above]: [bool; 2],
     output: &mut dyn Output,
     rows: &mut Rows,
 ) -> Statistics {
@@ -92,7 +93,7 @@ pub(super) fn facets<S: Surface>(
         let mut grid = Bicubic::blank(patch.net, patch.counts);
         grid.set_up();
         let form = grid.form();
-        let (form, rows) = ((&form, grid.is_turned(), grid.columns()), (rows, is_beside));
+        let (form, rows) = ((&form, grid.is_turned(), grid.columns()), (rows, [is_beside, is_above]));
         return strips(patch, looks, form, output, rows, &mut |columns, rows, cells| {
             let (_, style, window) = looks;
             let level = |depth| level_of(style, window, depth);
@@ -102,7 +103,7 @@ pub(super) fn facets<S: Surface>(
     }
     // Checked with the scene, so it cannot fail here.
     let Ok(plan) = Plan::of(Form::surface(patch.net, patch.counts), true) else { return Statistics::default() };
-    let (form, rows) = ((&plan.form, false, plan.form.steps.0), (rows, is_beside));
+    let (form, rows) = ((&plan.form, false, plan.form.steps.0), (rows, [is_beside, is_above]));
     strips(patch, looks, form, output, rows, &mut |columns, rows, cells| {
         general(&plan, patch.net, columns, (rows, cells), looks);
     })
@@ -129,7 +130,7 @@ fn strips(
     (light, style, _): (&Light, Style, DepthWindow),
     (form, is_turned, last): (&Form<'_>, bool, u32),
     output: &mut dyn Output,
-    (rows, is_beside): (&mut Rows, bool),
+    (rows, [is_beside, is_above]): (&mut Rows, [bool; 2]),
     walk: Walk<'_>,
 ) -> Statistics {
     // S_s × S_r points the other way.
@@ -140,7 +141,8 @@ fn strips(
         bounds.min.x.to_bits() >> 16 < window_of[0] || bounds.max.x.to_bits() >> 16 >= window_of[1] - 1
     };
     let quad = Quad { corners: [Vertex::NONE; 4], rows: [0; 2], patch: patch.index, is_wide };
-    let mut cells = Cells { quad, lighting, output, window: window_of, first: 0, facets: 0 };
+    let (window, is_cut, areas) = (window_of, is_wide || is_above, [[0; 2]; SEGMENTS]);
+    let mut cells = Cells { quad, lighting, output, window, first: 0, is_cut, facets: 0, known: 0, areas };
     while cells.first < last {
         let columns = (cells.first, (cells.first + SEGMENTS as u32).min(last));
         walk(columns, rows, &mut cells);
