@@ -280,7 +280,7 @@ impl RowSink for Cells<'_> {
         if self.lighting.style.needs_normals() {
             let corners = u64::from(seen) | u64::from(seen) << 1;
             let of_end = u64::from(end.is_some()) << (cells & 31);
-            let (missing, wanted) = ((corners | 3 * of_end) & !self.known, corners | of_end);
+            let (missing, wanted) = ((corners | (3 * of_end)) & !self.known, corners | of_end);
             if missing != 0 {
                 normals.shade(&self.lighting, above, [self.first, j - 1], missing);
             }
