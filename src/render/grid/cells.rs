@@ -238,12 +238,16 @@ impl Cells<'_> {
     #[inline(never)]
     fn inside(&self, above: &Row, below: &Row, seen: u32) -> u32 {
         let [x_from, x_to, y_from, y_to] = self.window;
-        let mut inside = 0;
-        for k in (0..SEGMENTS).filter(|k| seen >> k & 1 == 1) {
-            let [a, b, c, d] = [&above[k], &above[k + 1], &below[k + 1], &below[k]];
-            let meets = meet(rows([a.y, b.y, c.y, d.y]), y_from, y_to)
+        let (mut inside, mut bit) = (0, 1_u32);
+        let sides = above.iter().zip(above.iter().skip(1)).zip(below.iter().zip(below.iter().skip(1)));
+        for ((a, b), (d, c)) in sides {
+            let is_inside = seen & bit != 0
+                && meet(rows([a.y, b.y, c.y, d.y]), y_from, y_to)
                 && (!self.quad.is_wide || meet(rows([a.x, b.x, c.x, d.x]), x_from, x_to));
-            inside |= u32::from(meets) << k;
+            if is_inside {
+                inside |= bit;
+            }
+            bit <<= 1;
         }
         inside
     }
