@@ -77,8 +77,8 @@ pub(super) struct Patch<'a> {
 /// Sends the facets of a patch that meet the output's window to it; it may leave the window's columns if
 /// `is_beside`, and its rows if `is_above`.
 ///
-/// Stack: 0.4 KB, `rows` of 0.8 KB with two rows of 33 vertices, and 0.9 KB for the walk over a bicubic patch, or 1.1 KB
-/// and what the point engine takes.
+/// Stack: 2.8 KB with the caller's, of them 0.8 for `rows`, two of 33 vertices, and 0.8 KB for the walk over a bicubic patch,
+/// or 1.1 KB and what the point engine takes.
 pub(super) fn facets<S: Surface>(
     patch: &Patch<'_>,
     looks: (&Light, Style, DepthWindow),
