@@ -29,7 +29,7 @@ pub use word::Word;
 pub(crate) use coord::{bits_i16f16, bits_i32f32};
 pub(crate) use real::Real;
 pub(crate) use reciprocal::{
-    cubic_at, exact_reciprocal, high, leading_zeros, multiply, reciprocal, reciprocal_root, times_256th,
+    At, cubic_at, exact_reciprocal, high, leading_zeros, multiply, reciprocal, reciprocal_root, times_256th,
 };
 pub(crate) use round::{
     BINOMIAL, SURJECTIONS, div_half_up, div_up, product_half_up, products_half_up, shift_half_up, shift_up, sqrt_up,

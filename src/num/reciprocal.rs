@@ -114,34 +114,65 @@ pub(crate) fn high(a: i32, b: i32) -> i32 {
 /// A cubic c0 + c1·t + c2·t² + c3·t³, given as c0, 2·c1, 4·c2, 8·c3, at a parameter in 2^-31: rounded down three times.
 #[inline(always)]
 pub(crate) fn cubic_at(c: &[i32; 4], t: i32) -> i32 {
-    if HAS_DIVIDER {
+    if HAS_DIVIDER { At::new(t).cubic(c) } else { cubic_in_halves(c, t) }
+}
+
+#[inline(never)]
+fn cubic_in_halves(c: &[i32; 4], t: i32) -> i32 {
+    At { whole: t, halves: split(t) }.cubic_in_halves(c)
+}
+
+/// A parameter in 2^-31 for many cubics.
+#[derive(Clone, Copy)]
+pub(crate) struct At {
+    whole: i32,
+    /// Where products are made of those of halves.
+    halves: [i32; 2],
+}
+
+impl At {
+    #[inline(always)]
+    pub(crate) fn new(t: i32) -> Self {
+        Self { whole: t, halves: if HAS_DIVIDER { [0; 2] } else { split(t) } }
+    }
+
+    /// [`cubic_at`].
+    #[inline(always)]
+    pub(crate) fn cubic(self, c: &[i32; 4]) -> i32 {
+        if !HAS_DIVIDER {
+            return self.cubic_in_halves(c);
+        }
+        let t = self.whole;
         c[0].wrapping_add(high(c[1].wrapping_add(high(c[2].wrapping_add(high(c[3], t)), t)), t))
-    } else {
-        cubic_in_halves(c, t)
+    }
+
+    #[inline(always)]
+    fn cubic_in_halves(self, [a, b, c, d]: &[i32; 4]) -> i32 {
+        let value = c.wrapping_add(halves(*d, self.halves));
+        let value = b.wrapping_add(halves(value, self.halves));
+        a.wrapping_add(halves(value, self.halves))
     }
 }
 
 #[inline(never)]
-fn cubic_in_halves([a, b, c, d]: &[i32; 4], t: i32) -> i32 {
-    let value = c.wrapping_add(halves(*d, t));
-    let value = b.wrapping_add(halves(value, t));
-    a.wrapping_add(halves(value, t))
-}
-
-#[inline(never)]
 fn high_in_halves(a: i32, b: i32) -> i32 {
-    halves(a, b)
+    halves(a, split(b))
 }
 
+/// A number as h·2^16 + l, where l has a sign, too.
 #[inline(always)]
-fn halves(a: i32, b: i32) -> i32 {
-    let (a1, a0, b1, b0) = (a >> 16, a & 0xffff, b >> 16, b & 0xffff);
-    // Opaque to the compiler, which would make a call for a product of 64 bits of the four short ones.
-    let low = core::hint::black_box((a0 as u32).wrapping_mul(b0 as u32) >> 16);
-    // Neither sum reaches 2^31.
-    let middle = (a1 * b0).wrapping_add(low as i32);
-    let other = (a0 * b1).wrapping_add(middle & 0xffff);
-    a1 * b1 + (middle >> 16) + (other >> 16)
+fn split(a: i32) -> [i32; 2] {
+    // Rounded: the upper half of 2^31 − 1 is 2^15.
+    [((a >> 15) + 1) >> 1, i32::from(a as i16)]
+}
+
+/// The upper half of a product, of four products of half as many bits. With signs in the lower halves the sum of those in
+/// the middle fits: of an upper half of ±2^15 the lower one has the other sign, or is 0.
+#[inline(always)]
+fn halves(a: i32, [b1, b0]: [i32; 2]) -> i32 {
+    let [a1, a0] = split(a);
+    let middle = (a1 * b0).wrapping_add((a0 * b0) >> 16).wrapping_add(a0 * b1);
+    (a1 * b1).wrapping_add(middle >> 16)
 }
 
 /// ⌊a·b/2^17⌋ for b below 2^16.
@@ -219,11 +250,17 @@ mod tests {
         };
         for k in 0..100_000 {
             let (a, b) = (next(), next());
-            let (a, b) = if k % 7 == 0 { (a | 0x7fff_ffff, b | 0xffff) } else { (a, b) };
+            let (a, b) = match k % 7 {
+                0 => (a | 0x7fff_ffff, b | 0xffff),
+                1 => ([i32::MIN, i32::MIN + 0x8000, i32::MAX - 0x8000, i32::MAX, 0x7fff][k % 5] as u32, b),
+                _ => (a, b),
+            };
+            let b = if k % 9 == 0 { b & 0xffff_0000 | 0x8000 } else { b };
             let (p, q) = (a as i32, b as i32);
             assert_eq!(i64::from(high(p, q)), (i64::from(p) * i64::from(q)) >> 32);
             assert_eq!(high_in_halves(p, q), high(p, q));
             assert_eq!(times_256th_in_parts(p, q >> 9), times_256th(p, q >> 9));
+            assert_eq!(high_in_halves(q, p), high(p, q));
             let cubic = [next() as i32, next() as i32, p, next() as i32];
             assert_eq!(cubic_in_halves(&cubic, q), cubic_at(&cubic, q));
             assert_eq!(multiply_in_halves(a as i32, b & 0xffff), multiply(a as i32, b & 0xffff));

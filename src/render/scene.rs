@@ -3,7 +3,7 @@
 use super::brush::{Canvas, Shading};
 use super::depth::DepthWindow;
 use super::fill::{Draw, Drawing, fill as fill_exact};
-use super::grid::{self, Facet, Facets, Filler, Recorder, Segments};
+use super::grid::{self, Facet, Facets, Filler, Output, Recorder, Segments};
 use super::light::Light;
 #[cfg(feature = "styled")]
 use super::lines::any_family;
@@ -31,6 +31,14 @@ impl PixelBox {
     fn of(bounds: &Bounds) -> Self {
         let round = |c: I16F16| ((c.bits() + (1 << 15)) >> 16) as i32;
         Self { min: bounds.min.to_array().map(round), max: bounds.max.to_array().map(round) }
+    }
+
+    /// Whether points may be in columns, and in rows, that are not of the area or next to its ends.
+    fn may_leave(&self, area: &Area) -> [bool; 2] {
+        let leaves = |axis: usize, start: i32, len: u32| {
+            self.min[axis] <= start || i64::from(self.max[axis]) + 2 >= i64::from(start) + i64::from(len)
+        };
+        [leaves(0, area.x, area.width), leaves(1, area.y, area.height)]
     }
 
     /// Whether a pixel of the area is at most `reach` from the box.
@@ -236,21 +244,36 @@ impl<'a, S: Surface> Scene<'a, S> {
         entries: &'b mut [Facet],
         links: &'b mut [u16],
     ) -> Result<Option<(Facets<'b>, Statistics)>, RenderError> {
-        if self.segments.is_none() || self.style.lines().is_some() {
+        if !self.has_facets() {
             return Ok(None);
         }
         let end = |start: i32, length: u32| start.saturating_add_unsigned(length);
         let window = [area.x, end(area.x, area.width), area.y, end(area.y, area.height)];
-        let (mut recorder, mut statistics) = (Recorder::new(entries, window), Statistics::default());
+        let mut recorder = Recorder::new(entries, window);
+        let statistics = self.each_facet(&area, &mut recorder);
+        Ok(Some((Facets::of(recorder, links, rows)?, statistics)))
+    }
+
+    /// Whether it is drawn by facets.
+    fn has_facets(&self) -> bool {
+        self.segments.is_some() && self.style.lines().is_none()
+    }
+
+    /// Sends the facets of the patches that meet an area to an output.
+    #[inline(never)]
+    fn each_facet(&self, area: &Area, output: &mut dyn Output) -> Statistics {
+        let (mut rows, mut statistics) = (grid::Rows::new(), Statistics::default());
+        let [is_beside, is_above] = self.pixels.map_or([true; 2], |all| all.may_leave(area));
         for index in 0..self.patches.len() {
             if let Some(patch) = self.grid_patch(index)
-                && PixelBox::of(&patch.net.bounds()).meets(&area, 0)
+                && (!(is_beside || is_above) || PixelBox::of(&patch.net.bounds()).meets(area, 0))
             {
                 statistics.patches += 1;
-                statistics += grid::facets::<S>(&patch, (&self.light, self.style, self.window), &mut recorder);
+                let looks = (&self.light, self.style, self.window);
+                statistics += grid::facets::<S>(&patch, looks, [is_beside, is_above], output, &mut rows);
             }
         }
-        Ok(Some((Facets::of(recorder, links, rows)?, statistics)))
+        statistics
     }
 
     /// The patches.
@@ -288,6 +311,9 @@ impl<'a, S: Surface> Scene<'a, S> {
         paint: &P,
         mut notes: Option<&mut Notes>,
     ) -> Statistics {
+        if self.has_facets() {
+            return self.fill_facets(tile, paint);
+        }
         let mut statistics = Statistics::default();
         if self.style.lines() == Some(true) {
             self.each_visible(tile, |tile, patch| {
@@ -298,8 +324,6 @@ impl<'a, S: Surface> Scene<'a, S> {
             statistics.patches += 1;
             if self.style.lines().is_some() {
                 self.trace(self.lines, tile, paint, index, Ink::Fill, (&mut statistics, None));
-            } else if let Some(patch) = self.grid_patch(index) {
-                statistics += self.fill_facets(tile, paint, &patch);
             } else {
                 self.trace(self.fill, tile, paint, index, Ink::Fill, (&mut statistics, notes.as_deref_mut()));
             }
@@ -307,11 +331,11 @@ impl<'a, S: Surface> Scene<'a, S> {
         statistics
     }
 
-    /// Fills the facets of one patch. Out of line: points and facets need not stand on the stack together.
+    /// Fills the facets. Out of line: points and facets need not stand on the stack together.
     #[inline(never)]
-    fn fill_facets<P: Paint>(&self, tile: &mut Tile<'_, P::Pixel>, paint: &P, patch: &grid::Patch<'a>) -> Statistics {
-        let mut filler = Filler::new(tile, paint);
-        grid::facets::<S>(patch, (&self.light, self.style, self.window), &mut filler)
+    fn fill_facets<P: Paint>(&self, tile: &mut Tile<'_, P::Pixel>, paint: &P) -> Statistics {
+        let area = tile.area();
+        self.each_facet(&area, &mut Filler::new(tile, paint))
     }
 
     /// Calls `f` for every patch whose box meets the tile.

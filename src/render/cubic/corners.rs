@@ -56,25 +56,37 @@ fn by_powers([start, slope, bend, last]: RowCubic) -> Cubic {
 }
 
 impl<'n> Corners<'n> {
-    /// The grid of a net with so many segments; rows run along s if `is_turned`.
+    /// The grid of a net with so many segments, to be [set up](Self::set_up) where it stays; rows run along s if `is_turned`.
     #[inline(always)]
-    pub(in crate::render) fn new(net: SurfaceNet<'n>, steps: (u32, u32), is_turned: bool, steepest: u32) -> Self {
-        let mut piece = Piece::blank(net, steps, u8::from(is_turned));
-        piece.set_up::<false>(steepest);
+    pub(in crate::render) fn blank(net: SurfaceNet<'n>, steps: (u32, u32), is_turned: bool) -> Self {
+        Self {
+            piece: Piece::blank(net, steps, u8::from(is_turned)),
+            slopes: Slopes::BLANK,
+            base: [0; 3],
+            fraction: [0; 3],
+            shift: 1,
+            doublings: 0,
+            margin: 0,
+            doubt: 0,
+        }
+    }
+
+    /// Finds the coefficients; `steepest` says the largest bound on a derivative, in 2^-9.
+    #[inline(always)]
+    pub(in crate::render) fn set_up(&mut self, steepest: impl FnOnce() -> u32) {
+        if !self.piece.set_up_short() {
+            self.piece.set_up::<false>(steepest());
+        }
+        self.slopes.set_up(&self.piece);
+        let piece = &self.piece;
         let start = piece.origin.map(|c| c - (1 << 15));
         let (up, less) = (piece.bits.saturating_sub(16), 16_u32.saturating_sub(piece.bits));
-        let margin = if piece.is_cut { DOUBT_IF_CUT } else { DOUBT };
-        let shift = piece.bits.saturating_sub(CORNER).clamp(1, 31);
-        Self {
-            slopes: Slopes::of(&piece),
-            piece,
-            base: start.map(|c| c >> CORNER),
-            fraction: start.map(|c| (c & 255) >> less << up),
-            shift,
-            doublings: (CORNER + 1).saturating_sub(piece.bits),
-            margin,
-            doubt: if shift < 7 { u32::MAX } else { (2 * margin.unsigned_abs()) << (32 - shift) },
-        }
+        self.margin = if piece.is_cut { DOUBT_IF_CUT } else { DOUBT };
+        self.shift = piece.bits.saturating_sub(CORNER).clamp(1, 31);
+        self.base = start.map(|c| c >> CORNER);
+        self.fraction = start.map(|c| (c & 255) >> less << up);
+        self.doublings = (CORNER + 1).saturating_sub(piece.bits);
+        self.doubt = if self.shift < 7 { u32::MAX } else { (2 * self.margin.unsigned_abs()) << (32 - self.shift) };
     }
 
     /// Row `j`.
@@ -110,7 +122,9 @@ impl<'n> Corners<'n> {
             if (i == 0 || i == along.steps) && (row.j == 0 || row.j == across.steps) {
                 set(out, self.tip([i, row.j]));
             } else {
-                let exact = |axis: usize| self.exact(axis, [i, row.j], at(&cubics[axis], t));
+                // All values before one is settled: products of 64 bits with a number that is kept as one are dearer.
+                let values = [at(&cubics[0], t), at(&cubics[1], t), at(&cubics[2], t)];
+                let exact = |axis: usize| self.exact(axis, [i, row.j], values[axis]);
                 set(out, [exact(0), exact(1), exact(2)]);
             }
         }

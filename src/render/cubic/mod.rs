@@ -44,7 +44,7 @@ use super::light::Side;
 use super::pen::{Ink, Stain};
 use super::tile::Area;
 use crate::geometry::Point3;
-use crate::num::{cubic_at, high, leading_zeros};
+use crate::num::{At, cubic_at, high, leading_zeros};
 use crate::patch::{Surface, SurfaceNet};
 pub(super) use corners::Corners;
 use row::{Row, Units};
@@ -133,6 +133,20 @@ pub(super) struct Piece<'n> {
     doublings: [u32; 2],
 }
 
+/// The bits that corners leave for sums.
+const CORNERS_LESS: i32 = 2;
+
+/// What is known of coefficients.
+struct Found {
+    /// The bits that each of a row takes: magnitudes together.
+    sizes: [i32; 4],
+    /// How often all can be doubled.
+    spare: i32,
+    /// The bits of the values of the net, and of the first differences of columns.
+    values: i32,
+    steps: i32,
+}
+
 /// Whether a net of type `S` is walked here: a polynomial, tensor-product one of degree 3 or less.
 #[inline(always)]
 pub(super) fn suits<S: Surface>(net: &SurfaceNet<'_>) -> bool {
@@ -155,7 +169,7 @@ impl<'n> Piece<'n> {
             strides,
             along,
             across: Parameters::new(across),
-            differences: Differences::new(&along),
+            differences: Differences::NONE,
             bits: 0,
             is_cut: false,
             origin: [0; 3],
@@ -170,15 +184,39 @@ impl<'n> Piece<'n> {
     /// wanted.
     #[inline(never)]
     pub(super) fn set_up<const WALKED: bool>(&mut self, steepest: u32) {
+        if WALKED {
+            self.differences = Differences::new(&self.along);
+        }
         // 768·E·2^(16 − down) is below 2^31. Mostly there is much more room: then no bit is dropped after all.
         let mut down = 16_u32.saturating_sub(steepest.leading_zeros());
         // What is left for sums; differences of long steps are larger than values.
-        let less = if !WALKED { 2 } else { 3 + if self.along.steps < 4 { 3 } else { 0 } };
-        let (mut sizes, mut spare) = self.find(down, less);
+        let less = if !WALKED { CORNERS_LESS } else { 3 + if self.along.steps < 4 { 3 } else { 0 } };
+        let Found { mut sizes, mut spare, .. } = self.find(down, less);
         if down > 0 && spare > 0 {
             down = down.saturating_sub(spare as u32);
-            (sizes, spare) = self.find(down, less);
+            Found { sizes, spare, .. } = self.find(down, less);
         }
+        self.settle_bits(down, sizes, spare);
+    }
+
+    /// What [`set_up`](Self::set_up) does for corners, of a net that is not steep: returns whether this is one.
+    ///
+    /// Values below 2^26 have first differences below 2^27, and what columns are made of, at most 12 times as much, fits. So
+    /// do cubics of columns whose first differences are below 2^26: 32 times as much. With a bit to spare `set_up` would drop
+    /// none: with `down` of them dropped values are at most 2^-down of these and 768 more, which takes a bit.
+    #[inline(always)]
+    pub(super) fn set_up_short(&mut self) -> bool {
+        let Found { sizes, spare, values, steps } = self.find(0, CORNERS_LESS);
+        let is_short = (values | steps) < 1 << 26 && spare > 0;
+        if is_short {
+            self.settle_bits(0, sizes, spare);
+        }
+        is_short
+    }
+
+    /// Brings the coefficients to their bits: found with `down` bits less than the net has.
+    #[inline(never)]
+    fn settle_bits(&mut self, down: u32, sizes: [i32; 4], spare: i32) {
         if let Some(p) = self.points.first() {
             self.origin = p.to_array().map(|c| c.to_bits() + (1 << 15));
         }
@@ -194,7 +232,7 @@ impl<'n> Piece<'n> {
 
     /// One coordinate of the net, from that of its first point on: four values along a row after the other.
     #[inline(always)]
-    fn gather(&self, coordinate: impl Fn(&Point3) -> i32, out: &mut [i32; 16]) {
+    fn gather(&self, coordinate: impl Fn(&Point3) -> i32, out: &mut [i32; 16], found: &mut Found) {
         let start = self.points.first().map_or(0, &coordinate);
         let value = |p: &Point3| coordinate(p).wrapping_sub(start);
         match self.points.first_chunk::<16>() {
@@ -215,11 +253,12 @@ impl<'n> Piece<'n> {
                 }
             }
         }
+        found.values |= out.iter().fold(0, |all, value| all | magnitude(*value));
     }
 
     /// Finds the coefficients of rows along an axis, and what bits they have.
     #[inline(never)]
-    fn set_axis(&mut self, values: &[i32; 16], axis: usize, sizes: &mut [i32; 4]) {
+    fn set_axis(&mut self, values: &[i32; 16], axis: usize, found: &mut Found) {
         let (by_row, by_column) = (&FACTORS[self.degrees[0] & 3], &FACTORS[self.degrees[1] & 3]);
         let mut columns = [[0; 4]; 4];
         for (b, values) in values.as_chunks::<4>().0.iter().enumerate() {
@@ -229,9 +268,11 @@ impl<'n> Piece<'n> {
         }
         // Not by an index: out of line it would be checked.
         let rows = self.rows.get_mut(axis).into_iter().flatten();
-        for ((row, column), size) in rows.zip(&columns).zip(sizes) {
+        for ((row, column), size) in rows.zip(&columns).zip(&mut found.sizes) {
             *row = scaled(power(*column, by_column));
             *size |= row.iter().fold(0, |all, c| all | magnitude(*c));
+            let [p, q, r, s] = *column;
+            found.steps |= magnitude(q.wrapping_sub(p)) | magnitude(r.wrapping_sub(q)) | magnitude(s.wrapping_sub(r));
         }
     }
 
@@ -242,20 +283,22 @@ impl<'n> Piece<'n> {
             .fold([0; 2], |[least, most], value| [least.min(*value), most.max(*value)])
     }
 
-    /// Finds the coefficients from `down` bits less than the net has; what bits they have, and how often they can be doubled so
-    /// that `less` bits are left, and two more of the last one.
+    /// Finds the coefficients from `down` bits less than the net has; and how often they can be doubled so that `less` bits
+    /// are left, and two more of the last one.
     #[inline(never)]
-    fn find(&mut self, down: u32, less: i32) -> ([i32; 4], i32) {
-        let (mut sizes, mut values) = ([0; 4], [0; 16]);
-        self.gather(|p| p.x.to_bits() >> down, &mut values);
-        self.set_axis(&values, 0, &mut sizes);
-        self.gather(|p| p.y.to_bits() >> down, &mut values);
-        self.set_axis(&values, 1, &mut sizes);
-        self.gather(|p| p.z.to_bits() >> down, &mut values);
-        self.set_axis(&values, 2, &mut sizes);
+    fn find(&mut self, down: u32, less: i32) -> Found {
+        let mut found = Found { sizes: [0; 4], spare: 0, values: 0, steps: 0 };
+        let mut values = [0; 16];
+        self.gather(|p| p.x.to_bits() >> down, &mut values, &mut found);
+        self.set_axis(&values, 0, &mut found);
+        self.gather(|p| p.y.to_bits() >> down, &mut values, &mut found);
+        self.set_axis(&values, 1, &mut found);
+        self.gather(|p| p.z.to_bits() >> down, &mut values, &mut found);
+        self.set_axis(&values, 2, &mut found);
         self.depths = self.range(&values);
-        let [b0, b1, b2, b3] = sizes;
-        (sizes, zeros(b0 | b1 | b2).min(zeros(b3) - 2) - less)
+        let [b0, b1, b2, b3] = found.sizes;
+        found.spare = zeros(b0 | b1 | b2).min(zeros(b3) - 2) - less;
+        found
     }
 
     /// Brings values to their fraction bits: `more` than they have.
@@ -275,7 +318,8 @@ impl<'n> Piece<'n> {
     #[inline(never)]
     fn row(&self, axis: usize, s: i32) -> RowCubic {
         // Not by an index: out of line it would be checked.
-        self.rows.get(axis).map_or([0; 4], |[a, b, c, d]| [at(a, s), at(b, s), at(c, s), at(d, s)])
+        let at = At::new(s);
+        self.rows.get(axis).map_or([0; 4], |cubics| cubics.each_ref().map(|cubic| at.cubic(cubic)))
     }
 
     /// The walks along a row from parameter `t` on, of what pixels are made from: x and y plus [`DOUBT`], and z.

@@ -74,9 +74,13 @@ fn parameter(parameters: &Parameters, i: u32) -> i32 {
 }
 
 impl Slopes {
-    pub(super) fn of(piece: &Piece<'_>) -> Self {
+    pub(super) const BLANK: Self = Self([[[0; 3]; 4]; 3]);
+
+    /// Finds those of a piece.
+    #[inline(never)]
+    pub(super) fn set_up(&mut self, piece: &Piece<'_>) {
         let Piece { points, degrees: [m, h], strides, .. } = piece;
-        let mut slopes = [[[0; 3]; 4]; 3];
+        let slopes = &mut self.0;
         for a in 0..=m & 3 {
             // The control values of the derivative, up to its degree, and raised to degree 2 up to a factor.
             let mut sides = [[0; 3]; 3];
@@ -98,7 +102,6 @@ impl Slopes {
         for slope in slopes.as_flattened_mut() {
             *slope = quadratic(slope.map(|c| fit(c, bits)));
         }
-        Self(slopes)
     }
 }
 

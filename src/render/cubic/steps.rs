@@ -52,6 +52,9 @@ pub(super) struct Differences {
 }
 
 impl Differences {
+    /// Those of no walk.
+    pub(super) const NONE: Self = Self { first: [0; 3], second: [0; 2], shifts: [0; 2] };
+
     pub(super) fn new(along: &Parameters) -> Self {
         let log = along.steps.checked_ilog2().unwrap_or(0);
         // 2^31·(2^log·h)^k.

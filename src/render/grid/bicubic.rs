@@ -42,15 +42,21 @@ impl<'a> Bicubic<'a> {
         cubic::suits::<S>(net)
     }
 
-    /// The grid of a net that [`suits`](Self::suits).
-    pub(super) fn new(net: SurfaceNet<'a>, (r, s): (u32, u32)) -> Self {
+    /// The grid of a net that [`suits`](Self::suits), to be [set up](Self::set_up) where it stays.
+    #[inline(always)]
+    pub(super) fn blank(net: SurfaceNet<'a>, (r, s): (u32, u32)) -> Self {
         let is_turned = s > r;
-        let steepest = match net.points().first_chunk::<16>() {
+        Self { corners: Corners::blank(net, (r, s), is_turned), net, counts: (r.max(s), r.min(s)), is_turned }
+    }
+
+    /// Finds the coefficients.
+    #[inline(never)]
+    pub(super) fn set_up(&mut self) {
+        let net = self.net;
+        self.corners.set_up(|| match net.points().first_chunk::<16>() {
             Some(points) if net.degrees() == (3, 3) => steepest(points),
             _ => PieceSlopes::of(net).steepest(net),
-        };
-        let corners = Corners::new(net, (r, s), is_turned, steepest);
-        Self { corners, net, counts: (r.max(s), r.min(s)), is_turned }
+        });
     }
 
     pub(super) fn form(&self) -> Form<'a> {
@@ -85,7 +91,7 @@ impl<'a> Bicubic<'a> {
             if level.is_none() { with_room(depth) } else { depth }
         };
         let set = |vertex: &mut Vertex, [x, y, z]: [i32; 3]| {
-            (vertex.x, vertex.y, vertex.depth, vertex.lit) = (x, y, depth(z), Lit::Unknown);
+            (vertex.x, vertex.y, vertex.depth) = (x, y, depth(z));
         };
         for j in 0..=self.counts.1 {
             let Some(out) = rows.0[(j & 1) as usize].get_mut(..count.min(SEGMENTS + 1)) else { return };
@@ -93,8 +99,8 @@ impl<'a> Bicubic<'a> {
             if self.corners.is_exact(&row) {
                 self.corners.exact_row(&row, first, out, set);
             } else {
-                self.corners.each(&row, 0, first, out, |vertex, x| (vertex.x, vertex.lit) = (x, Lit::Unknown));
-                self.corners.each(&row, 1, first, out, |vertex, y| vertex.y = y);
+                self.corners.each(&row, 0, first, out, |vertex: &mut Vertex, x| vertex.x = x);
+                self.corners.each(&row, 1, first, out, |vertex: &mut Vertex, y| vertex.y = y);
                 self.corners.each(&row, 2, first, out, |vertex: &mut Vertex, z| vertex.depth = depth(z));
                 if let (Some(at), Some(vertex)) = (self.corners.end(&row, first), out.first_mut()) {
                     set(vertex, at);
@@ -125,6 +131,7 @@ struct TwoRows<'c, 'a> {
 }
 
 impl Normals for TwoRows<'_, '_> {
+    #[inline(always)]
     fn normal(&self, i: u32, j: u32) -> Option<[i32; 3]> {
         self.corners.normal(&self.tangents[(j & 1) as usize], i, j)
     }

@@ -31,6 +31,7 @@ pub use list::Facet;
 pub(super) use counts::Segments;
 pub(super) use list::{Facets, Recorder};
 pub(super) use quad::{Filler, Quad};
+pub(super) use vertices::Rows;
 
 use super::cull::{Facing, facing};
 use super::depth::DepthWindow;
@@ -43,7 +44,7 @@ use crate::num::I16F16;
 use crate::patch::{Surface, SurfaceNet};
 use bicubic::Bicubic;
 use cells::{Cells, Lighting, Side};
-use vertices::{Collector, Kept, Rows, SEGMENTS};
+use vertices::{Collector, Kept, SEGMENTS, Vertex};
 
 /// Fraction bits of vertices on the screen.
 const FRACTION_BITS: u32 = 8;
@@ -73,22 +74,27 @@ pub(super) struct Patch<'a> {
     pub(super) inward: Option<bool>,
 }
 
-/// Sends the facets of a patch that meet the output's window to it.
+/// Sends the facets of a patch that meet the output's window to it; it may leave the window's columns if
+/// `is_beside`, and its rows if `is_above`.
 ///
-/// Stack: 1.2 KB, of them 0.8 for two rows of 33 vertices, and 0.9 KB for the walk over a bicubic patch, or 1.1 KB and
-/// what the point engine takes.
+/// Stack: 2.8 KB with the caller's, of them 0.8 for `rows`, two of 33 vertices, and 0.8 KB for the walk over a bicubic patch,
+/// or 1.1 KB and what the point engine takes.
 pub(super) fn facets<S: Surface>(
     patch: &Patch<'_>,
     looks: (&Light, Style, DepthWindow),
+    [is_beside, is_above]: [bool; 2],
     output: &mut dyn Output,
+    rows: &mut Rows,
 ) -> Statistics {
     if patch.inward.is_some_and(|inward| may_hide(&patch.net, inward) && facing(&patch.net, inward) == Facing::Away) {
         return Statistics::default();
     }
     if Bicubic::suits::<S>(&patch.net) {
-        let grid = Bicubic::new(patch.net, patch.counts);
+        let mut grid = Bicubic::blank(patch.net, patch.counts);
+        grid.set_up();
         let form = grid.form();
-        return strips(patch, looks, (&form, grid.is_turned(), grid.columns()), output, &mut |columns, rows, cells| {
+        let (form, rows) = ((&form, grid.is_turned(), grid.columns()), (rows, [is_beside, is_above]));
+        return strips(patch, looks, form, output, rows, &mut |columns, rows, cells| {
             let (_, style, window) = looks;
             let level = |depth| level_of(style, window, depth);
             let level: Option<&dyn Fn(u16) -> u8> = if style.needs_normals() { None } else { Some(&level) };
@@ -97,7 +103,8 @@ pub(super) fn facets<S: Surface>(
     }
     // Checked with the scene, so it cannot fail here.
     let Ok(plan) = Plan::of(Form::surface(patch.net, patch.counts), true) else { return Statistics::default() };
-    strips(patch, looks, (&plan.form, false, plan.form.steps.0), output, &mut |columns, rows, cells| {
+    let (form, rows) = ((&plan.form, false, plan.form.steps.0), (rows, [is_beside, is_above]));
+    strips(patch, looks, form, output, rows, &mut |columns, rows, cells| {
         general(&plan, patch.net, columns, (rows, cells), looks);
     })
 }
@@ -123,19 +130,22 @@ fn strips(
     (light, style, _): (&Light, Style, DepthWindow),
     (form, is_turned, last): (&Form<'_>, bool, u32),
     output: &mut dyn Output,
+    (rows, [is_beside, is_above]): (&mut Rows, [bool; 2]),
     walk: Walk<'_>,
 ) -> Statistics {
-    let lighting = Lighting { light, style, form };
     // S_s × S_r points the other way.
-    let (side, window_of) = (Side::of(patch.inward.map(|inward| inward != is_turned)), output.window());
-    let bounds = patch.net.bounds();
-    let is_wide = bounds.min.x.to_bits() >> 16 < window_of[0] || bounds.max.x.to_bits() >> 16 >= window_of[1] - 1;
-    let mut cells =
-        Cells { patch: patch.index, lighting, side, output, window: window_of, is_wide, first: 0, facets: 0 };
-    let mut rows = Rows::new();
+    let side = Side::of(patch.inward.map(|inward| inward != is_turned));
+    let (lighting, window_of) = (Lighting { light, style, form, side }, output.window());
+    let is_wide = is_beside && {
+        let bounds = patch.net.bounds();
+        bounds.min.x.to_bits() >> 16 < window_of[0] || bounds.max.x.to_bits() >> 16 >= window_of[1] - 1
+    };
+    let quad = Quad { corners: [Vertex::NONE; 4], rows: [0; 2], patch: patch.index, is_wide };
+    let (window, is_cut, areas) = (window_of, is_wide || is_above, [[0; 2]; SEGMENTS]);
+    let mut cells = Cells { quad, lighting, output, window, first: 0, is_cut, facets: 0, known: 0, areas };
     while cells.first < last {
         let columns = (cells.first, (cells.first + SEGMENTS as u32).min(last));
-        walk(columns, &mut rows, &mut cells);
+        walk(columns, rows, &mut cells);
         cells.first = columns.1;
     }
     Statistics { vertices: form.point_count(), facets: cells.facets.into(), ..Statistics::default() }

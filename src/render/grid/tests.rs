@@ -61,7 +61,8 @@ fn general(net: SurfaceNet<'_>, counts: (u32, u32)) -> Vertices {
 fn short(net: SurfaceNet<'_>, counts: (u32, u32)) -> Vertices {
     let (mut all, mut rows, mut first) = (BTreeMap::new(), Rows::new(), 0);
     let window = DepthWindow::of(WINDOW.0, WINDOW.1);
-    let grid = Bicubic::new(net, counts);
+    let mut grid = Bicubic::blank(net, counts);
+    grid.set_up();
     while first < grid.columns() {
         let columns = (first, (first + 32).min(grid.columns()));
         grid.walk(columns, &mut rows, &mut Keep(&mut all, first), (window, None));

@@ -4,6 +4,7 @@ use super::super::depth::DepthWindow;
 use super::super::light::{normal_of, short};
 use super::super::pen::tangents_inside;
 use super::super::style::Style;
+use super::cells::Lighting;
 use super::level_of;
 use crate::forward::{Form, Fraction, Site, Visit};
 use crate::patch::SurfaceNet;
@@ -15,23 +16,22 @@ pub(super) const SEGMENTS: usize = 32;
 pub(super) type Row = [Vertex; SEGMENTS + 1];
 
 /// Rows j − 1 and j: row j stands at j mod 2.
-pub(super) type Rows = TwoRows;
+pub(in crate::render) type Rows = TwoRows;
 
 /// Two rows of vertices.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct TwoRows(pub(super) [Row; 2]);
+pub(in crate::render) struct TwoRows(pub(super) [Row; 2]);
 
 impl TwoRows {
-    pub(super) fn new() -> Self {
+    pub(in crate::render) fn new() -> Self {
         Self([[Vertex::NONE; SEGMENTS + 1]; 2])
     }
 }
 
-/// Which side of a patch the light reaches at a vertex; the other one has the ambient level.
+/// Which side of a patch the light reaches at a vertex; the other one has the ambient level. Written with the level, where a
+/// facet is seen there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Lit {
-    /// Not known yet: computed when a facet asks.
-    Unknown,
     /// The side to which S_r × S_s points.
     Along,
     /// The other side.
@@ -54,7 +54,7 @@ pub(super) struct Vertex {
 }
 
 impl Vertex {
-    const NONE: Self = Self { x: 0, y: 0, depth: 0, level: 0, lit: Lit::Unknown };
+    pub(super) const NONE: Self = Self { x: 0, y: 0, depth: 0, level: 0, lit: Lit::Both };
 
     #[inline(always)]
     pub(super) fn place(&self) -> [i32; 2] {
@@ -74,6 +74,21 @@ pub(super) fn with_room(depth: u16) -> u16 {
 pub(super) trait Normals {
     /// The normal S_r × S_s at column `i` of row `j`, of components of at most 2^15; `None` where it is not known.
     fn normal(&self, i: u32, j: u32) -> Option<[i32; 3]>;
+
+    /// Finds the levels of vertices from this column on in row `j`: where a bit is set.
+    #[inline(never)]
+    fn shade(&self, lighting: &Lighting<'_>, row: &mut Row, [first, j]: [u32; 2], mut wanted: u64) {
+        let in_full = lighting.keeps_sides();
+        for (vertex, i) in row.iter_mut().zip(first..) {
+            if wanted & 1 == 1 {
+                lighting.shade(vertex, self.normal(i, j), in_full);
+            }
+            wanted >>= 1;
+            if wanted == 0 {
+                break;
+            }
+        }
+    }
 }
 
 /// What is done with a row of vertices and the one before it.
@@ -121,12 +136,8 @@ pub(super) struct Collector<'v> {
 
 impl Collector<'_> {
     /// The level where it does not depend on a normal.
-    fn level(&self, depth: u16) -> (u8, Lit) {
-        if self.style.needs_normals() {
-            (0, Lit::Unknown)
-        } else {
-            (level_of(self.style, self.window, depth), Lit::Both)
-        }
+    fn level(&self, depth: u16) -> u8 {
+        if self.style.needs_normals() { 0 } else { level_of(self.style, self.window, depth) }
     }
 
     /// Directions of S_r and S_s; of what grows from one that vanishes.
@@ -166,14 +177,13 @@ impl Visit for Collector<'_> {
             return self;
         }
         let depth = self.window.depth_of_256(at.floor(2, &self.fraction));
-        let (level, lit) = self.level(depth);
         let tangents = self.tangents(at);
         let vertex = Vertex {
             x: at.floor(0, &self.fraction),
             y: at.floor(1, &self.fraction),
             depth: with_room(depth),
-            level,
-            lit,
+            level: self.level(depth),
+            lit: Lit::Both,
         };
         let (row, column) = ((j & 1) as usize, (i - first) as usize);
         if let (Some(slot), Some(kept)) = (self.rows.0[row].get_mut(column), self.kept.rows[row].get_mut(column)) {
