@@ -22,7 +22,7 @@ use crate::num::{I16F16, leading_zeros, reciprocal_root};
 /// A vector in the plane of the screen.
 type Vector = [i32; 2];
 
-/// A quantity that is linear along one parameter and cubic along the other: its coefficients, or half their sum and difference.
+/// A quantity that is linear along one parameter and cubic along the other: its coefficients.
 type Bend = [[Vector; 4]; 2];
 
 /// Bits of second differences.
@@ -147,15 +147,17 @@ impl Bends {
     }
 }
 
-/// Half the sums and differences of coefficients, doubled; the differences over Q.
+/// Half the sums and half the differences of coefficients, doubled, the differences over Q: by axis.
+type Halves = [[[i32; 4]; 2]; 2];
+
 #[inline(always)]
-fn halves([start, end]: &Bend, scale: impl Fn(i32) -> i32, lambda: i32) -> Bend {
-    let mut halves = [[[0; 2]; 4]; 2];
+fn halves([start, end]: &Bend, scale: impl Fn(i32) -> i32, lambda: i32) -> Halves {
+    let mut halves = [[[0; 4]; 2]; 2];
     for k in 0..4 {
         for axis in 0..2 {
             let (start, end) = (scale(start[k][axis]), scale(end[k][axis]));
-            halves[0][k][axis] = start.wrapping_add(end);
-            halves[1][k][axis] = end.wrapping_sub(start).wrapping_mul(lambda) >> LAMBDA_BITS;
+            halves[axis][0][k] = start.wrapping_add(end);
+            halves[axis][1][k] = end.wrapping_sub(start).wrapping_mul(lambda) >> LAMBDA_BITS;
         }
     }
     halves
@@ -163,9 +165,9 @@ fn halves([start, end]: &Bend, scale: impl Fn(i32) -> i32, lambda: i32) -> Bend 
 
 /// The square of the longest coefficient.
 #[inline(always)]
-fn largest([middles, halves]: &Bend) -> u32 {
-    let pairs = middles.iter().zip(halves);
-    pairs.fold(0, |most, (m, h)| most.max(square([m[0] + h[0], m[1] + h[1]])).max(square(minus(*m, *h))))
+fn largest([[mx, hx], [my, hy]]: &Halves) -> u32 {
+    let ends = |k: usize| [[mx[k] + hx[k], my[k] + hy[k]], [mx[k] - hx[k], my[k] - hy[k]]].map(square);
+    (0..4).fold(0, |most, k| most.max(ends(k)[0]).max(ends(k)[1]))
 }
 
 /// The coefficients of a cubic over the middle λ of its interval.
@@ -183,18 +185,13 @@ fn restrict([a, b, c, d]: [i32; 4], [l1, l2, l3]: [i32; 3]) -> [i32; 4] {
     [ends - far, insides - close, insides + close, ends + far].map(|c| c >> 3)
 }
 
-/// What is linear along one parameter and cubic over Q along the other, at four places along the first: by axis.
-#[inline(always)]
-fn spread(bend: &Bend, lambdas: [i32; 3], axis: usize) -> [[i32; 4]; 2] {
-    bend.each_ref().map(|row| restrict(row.map(|v| v[axis]), lambdas))
-}
-
 /// The square of the longest coefficient of the sum over Q.
 #[inline(never)]
-fn largest_of_sum(first: &Bend, second: &Bend, lambdas: [[i32; 3]; 2]) -> u32 {
+fn largest_of_sum(first: &Halves, second: &Halves, lambdas: [[i32; 3]; 2]) -> u32 {
     let mut squares = [[0_u32; 4]; 4];
-    for axis in 0..2 {
-        let ([m, h], [n, g]) = (spread(first, lambdas[1], axis), spread(second, lambdas[0], axis));
+    for (first, second) in first.iter().zip(second) {
+        let [m, h] = [restrict(first[0], lambdas[1]), restrict(first[1], lambdas[1])];
+        let [n, g] = [restrict(second[0], lambdas[0]), restrict(second[1], lambdas[0])];
         // A function that is −half and half at the ends, as coefficients of degree 3.
         let [h, g] = [h, g].map(|half| half.map(|end| [end, end.wrapping_mul(21_845) >> 16]));
         let at = |[end, third]: [i32; 2], k: usize| [-end, -third, third, end][k];
