@@ -303,8 +303,9 @@ mod tests {
     #[test]
     fn roots_are_close() {
         for square in (0..100_000).chain((0..60_000).map(|k| (1 << 31) - 1 - k * 35_000)) {
-            let off = f64::from(root(square)) - f64::from(square).sqrt();
-            assert!(off.abs() <= f64::from(ROOT), "{square}: {off}");
+            let (found, square) = (u64::from(root(square)), u64::from(square));
+            let (least, most) = (found.saturating_sub(ROOT.into()), found + u64::from(ROOT));
+            assert!(least * least <= square && square <= most * most, "{square}: {found}");
         }
     }
 }
