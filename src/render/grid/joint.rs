@@ -230,7 +230,8 @@ enum Verdict {
 }
 
 impl Bends {
-    /// Whether cells are within a tolerance, given eight thirds of it halved, in 2^(e − 12) pixel. All times r²·s².
+    /// Whether cells are within a tolerance, given four thirds of it in 2^(e − 12) pixel: second differences are a sixth of
+    /// derivatives, and eight times the error is bounded. All is multiplied by r²·s².
     #[inline(never)]
     fn judge(&self, Cells { r, s }: Cells, tolerance: u32) -> Verdict {
         let (by_r, by_s) = (r * r, s * s);
@@ -259,8 +260,9 @@ impl Bends {
         if most + (99 * drift).div_ceil(256) <= limit {
             return Verdict::Within;
         }
-        let (above, below) = (root(c).saturating_sub(root(a.max(b)) + 2 * ROOT), limit.saturating_sub(most));
-        if (drift * drift).div_ceil(4) <= above * below.min(1 << 15) { Verdict::Within } else { beyond }
+        let above = root(c).saturating_sub(root(a.max(b)) + 2 * ROOT);
+        let excess = u64::from(above) * u64::from(limit.saturating_sub(most));
+        if u64::from(drift) * u64::from(drift) <= 4 * excess { Verdict::Within } else { beyond }
     }
 
     /// The least count that would do if there were no bend along the other direction, or one less.
