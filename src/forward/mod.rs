@@ -46,11 +46,11 @@
 //!
 //! | | M0 | M4 | RV32 |
 //! |---|---|---|---|
-//! | row order | 34.0 | 22.9 | 24.4 |
-//! | any order | 28.6 | 18.0 | 18.5 |
-//! | nearest of each pixel ([`VisibilityBuffer::draw`]) | 50.7 | 35.8 | 34.7 |
-//! | row order with the feature `asm` | 29.1 | 22.9 | 24.4 |
-//! | [`Lattice::checksum`] with it | 16.7 | 13.5 | 16.3 |
+//! | row order | 34.1 | 22.9 | 24.4 |
+//! | any order | 28.7 | 18.0 | 18.5 |
+//! | nearest of each pixel ([`VisibilityBuffer::draw`]) | 50.7 | 35.9 | 34.7 |
+//! | row order with the feature `asm` | 29.2 | 22.9 | 24.4 |
+//! | [`Lattice::checksum`] with it | 16.7 | 13.5 | 16.4 |
 //! | nearest of each pixel with it | 50.7 | 21.1 | 34.7 |
 //!
 //! What a compiler leaves above that, in any order: on ARMv6-M a coordinate takes three additions, a shift and a store, and
