@@ -178,7 +178,7 @@ fn levels_of_the_teapot() {
     let light = Light::default();
     let direction = light.direction().map(|c| f64::from(c) / 32768.0);
     let ambient = f64::from(light.ambient()) / 255.0;
-    for (tolerance, limit) in [(2.0, (4.1, 90.0)), (1.0, (3.0, 75.0)), (0.5, (2.0, 60.0))] {
+    for (tolerance, limit) in [(2.0, (4.1, 26.0)), (1.0, (2.6, 31.0)), (0.5, (1.5, 13.0))] {
         let truth = Truth::of(&patches, &edges, SCREEN, tolerance);
         let scene = Scene::new(&patches, light, Style::Shaded).unwrap().with_topology(&edges).unwrap();
         let (pixels, statistics) = draw(scene.with_fill(grid(tolerance)).unwrap(), SCREEN);

@@ -311,10 +311,12 @@ impl<'a, S: Surface> Scene<'a, S> {
         paint: &P,
         mut notes: Option<&mut Notes>,
     ) -> Statistics {
-        if self.has_facets() {
-            return self.fill_facets(tile, paint);
-        }
+        // One result in its place, whatever the fill: a second one would stand on the stack below the drawing.
         let mut statistics = Statistics::default();
+        if self.has_facets() {
+            self.fill_facets(tile, paint, &mut statistics);
+            return statistics;
+        }
         if self.style.lines() == Some(true) {
             self.each_visible(tile, |tile, patch| {
                 self.trace(self.fill, tile, paint, patch, Ink::Occlude, (&mut statistics, notes.as_deref_mut()));
@@ -333,9 +335,9 @@ impl<'a, S: Surface> Scene<'a, S> {
 
     /// Fills the facets. Out of line: points and facets need not stand on the stack together.
     #[inline(never)]
-    fn fill_facets<P: Paint>(&self, tile: &mut Tile<'_, P::Pixel>, paint: &P) -> Statistics {
+    fn fill_facets<P: Paint>(&self, tile: &mut Tile<'_, P::Pixel>, paint: &P, statistics: &mut Statistics) {
         let area = tile.area();
-        self.each_facet(&area, &mut Filler::new(tile, paint))
+        *statistics += self.each_facet(&area, &mut Filler::new(tile, paint));
     }
 
     /// Calls `f` for every patch whose box meets the tile.

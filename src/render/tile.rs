@@ -106,8 +106,8 @@ impl<'b, P: Copy> Tile<'b, P> {
         let (Some(colour), Some(depth)) = (colour.get_mut(..needed), depth.get_mut(..needed)) else {
             return Err(error);
         };
-        fill(colour, background);
         fill_aligned(depth, FAR);
+        fill(colour, background);
         Ok(Self { area, colour, depth })
     }
 
@@ -157,15 +157,14 @@ fn fill<T: Copy>(buffer: &mut [T], value: T) {
 
 /// Fills a buffer of depths, by whole words between its ends.
 fn fill_aligned(buffer: &mut [u16], value: u16) {
-    let (start, words, end) = bytemuck::pod_align_to_mut::<u16, [u32; 4]>(buffer);
-    let word = u32::from(value) << 16 | u32::from(value);
-    // Opaque and in registers of their own: four of them are stored at once.
-    let [a, b, c, d] = core::hint::black_box([word; 4]);
-    let (chunks, others) = words.as_chunks_mut::<4>();
-    for chunk in chunks {
-        *chunk = [[a, b, c, d]; 4];
+    let (start, words, end) = bytemuck::pod_align_to_mut::<u16, [u32; 16]>(buffer);
+    // Opaque, so that the loop is kept and no call made of it.
+    let word = core::hint::black_box(u32::from(value) << 16 | u32::from(value));
+    for words in words {
+        *words = [word; 16];
+        // As in `fill`.
+        core::hint::black_box(());
     }
-    others.fill([word; 4]);
     start.fill(value);
     end.fill(value);
 }

@@ -56,8 +56,24 @@ pub(super) fn walk_of([x, y, z]: &[Table<i32, 4>; 3]) -> Walk {
 }
 
 #[cfg(forward_asm = "rv32")]
-pub(super) use rv32::class_sum;
+use rv32 as kernels;
 #[cfg(forward_asm = "v6m")]
-pub(super) use v6m::{PAIRS, class_sum, pairs};
+use v6m as kernels;
+#[cfg(forward_asm = "v6m")]
+pub(super) use v6m::{PAIRS, pairs};
 #[cfg(forward_asm = "v7m")]
 pub(super) use v7m::{Depths, PIXELS, Places, product_row, wide_row};
+
+/// The sum of `rows` rows, which are one, or as many as the first one has points: `count`, and each other one has one less
+/// than the one before it. Coordinates are above `shift` bits, 23 without a sign, 22 or 16 with one.
+#[cfg(any(forward_asm = "v6m", forward_asm = "rv32"))]
+pub(super) fn class_sum(walk: &mut Walk, shift: u32, count: u32, rows: u32) -> i32 {
+    // SAFETY: each reads and writes the 32 words of `walk` alone.
+    unsafe {
+        match shift {
+            23 => kernels::small(walk, count, rows),
+            22 => kernels::screen(walk, count, rows),
+            _ => kernels::large(walk, count, rows),
+        }
+    }
+}

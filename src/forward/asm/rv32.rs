@@ -3,19 +3,6 @@
 use super::Walk;
 use core::arch::naked_asm;
 
-/// The sum of `rows` rows, which are one, or as many as the first one has points: `count`, and each other one has one less
-/// than the one before it. Coordinates are above `shift` bits, 23 without a sign, 22 or 16 with one.
-pub(in crate::forward) fn class_sum(walk: &mut Walk, shift: u32, count: u32, rows: u32) -> i32 {
-    // SAFETY: each reads and writes the 32 words of `walk` alone.
-    unsafe {
-        match shift {
-            23 => small(walk, count, rows),
-            22 => screen(walk, count, rows),
-            _ => large(walk, count, rows),
-        }
-    }
-}
-
 /// The rows with coordinates read by `$read` and so many bits.
 ///
 /// a0: the sum, a1: turns to go, a2: scratch; a3, a4, a5: v of x, y, z, a6, a7, t0: d1, t1, t2, t3: d2, t4, t5, t6: d3; s0: the
@@ -25,7 +12,7 @@ pub(in crate::forward) fn class_sum(walk: &mut Walk, shift: u32, count: u32, row
 macro_rules! rows {
     ($name:ident, $read:literal, $shift:literal) => {
         #[unsafe(naked)]
-        unsafe extern "C" fn $name(walk: &mut Walk, count: u32, rows: u32) -> i32 {
+        pub(super) unsafe extern "C" fn $name(walk: &mut Walk, count: u32, rows: u32) -> i32 {
             naked_asm!(
                 ".option push",
                 ".option norvc",

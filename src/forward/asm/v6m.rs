@@ -22,19 +22,6 @@ pub(in crate::forward) fn pairs(rows: &mut [[i32; 4]; 3], room: &mut [i32; 6 * P
     }
 }
 
-/// The sum of `rows` rows, which are one, or as many as the first one has points: `count`, and each other one has one less
-/// than the one before it. Coordinates are above `shift` bits, 23 without a sign, 22 or 16 with one.
-pub(in crate::forward) fn class_sum(walk: &mut Walk, shift: u32, count: u32, rows: u32) -> i32 {
-    // SAFETY: each reads and writes the 32 words of `walk` alone.
-    unsafe {
-        match shift {
-            23 => small(walk, count, rows),
-            22 => screen(walk, count, rows),
-            _ => large(walk, count, rows),
-        }
-    }
-}
-
 /// The rows with the coordinate of `$v` read by `$read` to r0.
 ///
 /// In a row: r1, r2, r3: d1 of x, y, z, r4, r5, r6: v, r8, r9, r7: d2, r10, r11, r12: d3, lr: the sum, r0: a coordinate. Then
@@ -44,7 +31,7 @@ pub(in crate::forward) fn class_sum(walk: &mut Walk, shift: u32, count: u32, row
 macro_rules! rows {
     ($name:ident, $read:literal, $shift:literal) => {
         #[unsafe(naked)]
-        unsafe extern "C" fn $name(walk: &mut Walk, count: u32, rows: u32) -> i32 {
+        pub(super) unsafe extern "C" fn $name(walk: &mut Walk, count: u32, rows: u32) -> i32 {
             naked_asm!(
                 "push {{r4-r7, lr}}",
                 "mov r4, r8",
